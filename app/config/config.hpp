@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/config/column.hpp"
+#include "dampline/sample/sample.hpp"
+
+namespace dampline::app {
+
+struct CarConfig {
+  double moving_mass_kg{37200.0};                  ///< truck frame and its share of the body
+  std::optional<double> suspension_stiffness_npm;  ///< start value; absent: unknown
+};
+
+/// Frames on a bus or in a candump log. A signal is MESSAGE.SIGNAL of the DBC file.
+struct CanConfig {
+  std::string dbc;  ///< path, relative to the configuration file; empty: the project's own sensors
+  std::array<std::string, kChannels> accel{};    ///< indexed by Channel; empty: the project's own
+  std::array<std::string, kChannels> counter{};  ///< empty: found in the accel's message by name
+  std::string interface;                         ///< empty: every interface of the log
+};
+
+/// Anti-aliasing filter of the sensors: a Butterworth low-pass, the same in every channel.
+struct AntiAliasInput {
+  double corner_hz{100.0};  ///< -3 dB; 0: none, or not known
+  int order{4};
+};
+
+struct InputConfig {
+  double sample_rate_hz{300.0};  ///< nominal; the records' own time decides
+  AntiAliasInput anti_alias;
+  CanConfig can;
+  std::array<std::string, kColumns> columns{};  ///< header names; empty: the canonical name
+  std::array<double, kColumns> scale{};  ///< factor from the file's number to the canonical unit
+  /// Full scale per channel: |a| at or beyond it is clipping. Absent: from the DBC, or not known.
+  std::array<std::optional<double>, kChannels> range_mps2{};
+  InputConfig() { scale.fill(1.0); }
+  [[nodiscard]] std::string header(Column column) const {
+    const std::string& own = columns[index(column)];
+    return own.empty() ? std::string{name(column)} : own;
+  }
+};
+
+struct ModelConfig {
+  std::vector<std::string> base{"coulomb"};    ///< effect names beside the linear spring
+  std::vector<std::string> candidates{"all"};  ///< effect names, or "all"
+  std::string inertia{"none"};  ///< of a rig's force: "none", or "identify" for a driven mass
+  /// Linear spring: "none", "identify", or "auto": identified for a truck, none in a rig's force.
+  std::string stiffness{"auto"};
+  std::optional<double> rig_corner_hz;  ///< of a rig's test function; absent: "auto", from the data
+  std::vector<double> curve_nodes_mps;  ///< right ends of the curve's segments; empty: default
+  std::optional<double> velocity_corner_hz;  ///< absent: "auto", from the measured noise
+};
+
+struct EstimateConfig {
+  std::string memory{"infinite"};  ///< "infinite", "window" or "forgetting"
+  double window_s{600.0};
+  double time_constant_s{600.0};
+};
+
+/// Everything a person can set, with defaults that work.
+struct Config {
+  CarConfig car;
+  InputConfig input;
+  ModelConfig model;
+  EstimateConfig estimate;
+};
+
+/// Reads a TOML file over the defaults. Relative paths in it become relative to its folder.
+/// Throws UsageError naming file, line and key for an unknown key, a wrong type or a value out of
+/// range; the tables [run] of a run directory's own run.toml is passed over.
+[[nodiscard]] Config load_config(const std::filesystem::path& file);
+
+/// The same from text; `origin` is what errors call it.
+[[nodiscard]] Config parse_config(std::string_view text, const std::string& origin);
+
+/// The complete configuration as TOML that loads back to the same values.
+[[nodiscard]] std::string show_config(const Config& config);
+
+}  // namespace dampline::app

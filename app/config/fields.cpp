@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "app/config/fields.hpp"
+
+#include "app/config/effects.hpp"
+#include "dampline/snapshot.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::array<std::string_view, 2> kInertiaWords{"none", "identify"};
+constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "none"};
+constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
+constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
+constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
+constexpr std::array<std::string_view, kChannels> kAccelKeys{"frame_accel", "wheelset1_accel",
+                                                             "wheelset2_accel"};
+constexpr std::array<std::string_view, kChannels> kCounterKeys{"frame_counter", "wheelset1_counter",
+                                                               "wheelset2_counter"};
+
+using Fields = std::vector<Field>;
+
+void add_car(CarConfig& car, Fields& out) {
+  out.push_back({"car", "moving_mass_kg", "truck frame and its share of the body",
+                 NumberField{&car.moving_mass_kg, {1.0, 1e6}}});
+  out.push_back({"car", "suspension_stiffness_npm", "start value, identified too; absent: unknown",
+                 OptionalNumberField{&car.suspension_stiffness_npm, {1.0, 1e12}, ""}});
+}
+
+void add_can(CanConfig& can, Fields& out) {
+  out.push_back(
+      {"input.can", "dbc", "empty: the project's own simulated sensors", TextField{&can.dbc, {}}});
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.push_back({"input.can", kAccelKeys[c], "MESSAGE.SIGNAL of the DBC file, in m/s^2",
+                   TextField{&can.accel[c], {}}});
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.push_back({"input.can", kCounterKeys[c], "sample counter; empty: found by its name",
+                   TextField{&can.counter[c], {}}});
+  out.push_back({"input.can", "interface", "only frames of this one; empty: all",
+                 TextField{&can.interface, {}}});
+}
+
+void add_csv(InputConfig& input, Fields& out) {
+  for (std::size_t i = 0; i < kColumns; ++i)
+    out.push_back({"input.columns", kColumnNames[i], "header name in the file; empty: this name",
+                   TextField{&input.columns[i], {}}});
+  for (std::size_t i = 0; i < kColumns; ++i)
+    out.push_back({"input.scale", kColumnNames[i], "factor from the file's number to this unit",
+                   NumberField{&input.scale[i], {-1e12, 1e12}}});
+}
+
+void add_input(InputConfig& input, Fields& out) {
+  out.push_back({"input", "sample_rate_hz", "nominal; the records' own time decides",
+                 NumberField{&input.sample_rate_hz, {1.0, 1e5}}});
+  out.push_back({"input.anti_alias", "corner_hz", "of the sensors' low-pass; 0: none, or unknown",
+                 NumberField{&input.anti_alias.corner_hz, {0.0, 1e5}}});
+  out.push_back({"input.anti_alias", "order", "of that Butterworth filter",
+                 IntegerField{&input.anti_alias.order, {1.0, 8.0}}});
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.push_back({"input.range_mps2", kChannelNames[c],
+                   "|a| at or beyond it is clipping; absent: from the DBC file",
+                   OptionalNumberField{&input.range_mps2[c], {1e-3, 1e6}, ""}});
+  add_can(input.can, out);
+  add_csv(input, out);
+}
+
+void add_model(ModelConfig& model, Fields& out) {
+  constexpr std::span<const std::string_view> kAll{kEffects};
+  out.push_back({"model", "base", "effects beside the linear spring",
+                 TextListField{&model.base, kAll.first(kEffects.size() - 1)}});
+  out.push_back({"model", "candidates", "effects to try where the base fails",
+                 TextListField{&model.candidates, kAll}});
+  out.push_back({"model", "inertia", "of a rig's force: none, or identify for a driven mass",
+                 TextField{&model.inertia, kInertiaWords}});
+  out.push_back({"model", "stiffness", "linear spring; auto: identified for a truck, none on a rig",
+                 TextField{&model.stiffness, kStiffnessWords}});
+  out.push_back({"model", "rig_corner_hz", "of a rig's test function; auto: from the data",
+                 OptionalNumberField{&model.rig_corner_hz, {1e-3, 1e5}, "auto"}});
+  out.push_back({"model", "curve_nodes_mps", "right ends of the 8 segments; empty: default",
+                 NumberListField{&model.curve_nodes_mps, {1e-5, 10.0}, kCurveSegments}});
+  out.push_back({"model", "velocity_corner_hz",
+                 "of the drift filter, 0.7 or 1.0; auto: from the noise",
+                 OptionalNumberField{&model.velocity_corner_hz, {0.7, 1.0}, "auto", kCornersHz}});
+}
+
+void add_estimate(EstimateConfig& estimate, Fields& out) {
+  out.push_back({"estimate", "memory", "infinite, window or forgetting",
+                 TextField{&estimate.memory, kMemoryWords}});
+  out.push_back({"estimate", "window_s", "length of the window",
+                 NumberField{&estimate.window_s, {10.0, 1e7}}});
+  out.push_back({"estimate", "time_constant_s", "of forgetting",
+                 NumberField{&estimate.time_constant_s, {10.0, 1e7}}});
+}
+
+}  // namespace
+
+std::vector<Field> fields(Config& config) {
+  Fields out;
+  add_car(config.car, out);
+  add_input(config.input, out);
+  add_model(config.model, out);
+  add_estimate(config.estimate, out);
+  return out;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/identify/sample_feed.hpp"
+#include "app/run/checksum.hpp"
+#include "app/run/result.hpp"
+
+namespace dampline::app {
+
+struct Identified {
+  RunResult result;
+  std::string state;  ///< for state.dls; empty for a rig
+  std::vector<InputFile> inputs;
+};
+
+/// Opens a record, whatever its kind, and identifies it. Throws RunError or UsageError; there is no
+/// partial result.
+[[nodiscard]] Identified identify_source(const Config& config, const SourceOptions& source,
+                                         bool show_progress);
+
+}  // namespace dampline::app

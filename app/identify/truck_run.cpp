@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "app/identify/truck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "app/error.hpp"
+#include "app/identify/truck_result.hpp"
+#include "app/text/quantity.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kFirstIntervalSeconds = 4.0;
+
+constexpr std::string_view reason(BlockStatus status) {
+  switch (status) {
+    case BlockStatus::kExcludedGap:
+      return "samples missing";
+    case BlockStatus::kExcludedSaturated:
+      return "channel at full scale";
+    case BlockStatus::kExcludedStuck:
+      return "channel stuck";
+    case BlockStatus::kExcludedNotFinite:
+      return "not a number";
+    case BlockStatus::kStill:
+      return "standstill";
+    case BlockStatus::kUsed:
+    case BlockStatus::kPartial:
+      break;
+  }
+  return "";
+}
+
+Memory memory_of(const std::string& word) {
+  if (word == "window") return Memory::kWindow;
+  return word == "forgetting" ? Memory::kForgetting : Memory::kInfinite;
+}
+
+IdentifierConfig with_screen(IdentifierConfig core, const ScreenConfig& screen) {
+  core.screen = screen;
+  return core;
+}
+
+}  // namespace
+
+IdentifierConfig identifier_config(const Config& config) {
+  IdentifierConfig core;
+  core.sample_rate_hz = config.input.sample_rate_hz;
+  core.moving_mass_kg = config.car.moving_mass_kg;
+  core.velocity_corner_hz = config.model.velocity_corner_hz.value_or(0.0);
+  core.anti_alias = {config.input.anti_alias.corner_hz, config.input.anti_alias.order};
+  const auto& nodes = config.model.curve_nodes_mps;
+  if (!nodes.empty()) std::copy(nodes.begin(), nodes.end(), core.curve_nodes_mps.begin());
+  core.memory = memory_of(config.estimate.memory);
+  core.memory_s =
+      core.memory == Memory::kWindow ? config.estimate.window_s : config.estimate.time_constant_s;
+  for (const std::string& effect : config.model.base)
+    if (effect != "coulomb" && effect != "viscous")
+      throw UsageError{
+          fmt::format("[model] base: \"{}\" cannot be identified from a truck's "
+                      "accelerations yet; \"coulomb\" and \"viscous\" can",
+                      effect)};
+  if (!Identifier::check(core).ok())
+    throw UsageError{
+        fmt::format("[input] sample_rate_hz: found {}, expected 150 to 400 for a truck's "
+                    "accelerations (with [model] and [estimate] in their ranges)",
+                    core.sample_rate_hz)};
+  return core;
+}
+
+TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
+    : core_{with_screen(identifier_config(config), screen)},
+      config_{config},
+      identifier_{std::make_unique<Identifier>(core_)},
+      block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
+      history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
+      excerpt_{core_.sample_rate_hz} {}
+
+void TruckRun::take(const Sample& sample) {
+  if (!started_) {
+    started_ = true;
+    first_tick_ = sample.tick;
+    history_ = {static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz),
+                first_tick_};
+  }
+  newest_tick_ = std::max(newest_tick_, sample.tick);
+  clipping_.take(sample);
+  const UpdateResult result = identifier_->update(sample);
+  if (result.has_motion) excerpt_.take(result.motion);
+  if (!result.block_closed) return;
+  note_block(result.block);
+  if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->snapshot());
+}
+
+void TruckRun::note_block(const BlockReport& block) {
+  ++blocks_[static_cast<std::size_t>(block.status)];
+  const std::string_view why = reason(block.status);
+  if (why.empty()) return;
+  const double start = std::max(0.0, static_cast<double>(block.first_tick - first_tick_));
+  const double end = static_cast<double>(block.first_tick - first_tick_) + block_ticks_;
+  excluded_.add(start / core_.sample_rate_hz, end / core_.sample_rate_hz, why);
+}
+
+double TruckRun::time_s() const noexcept {
+  return static_cast<double>(newest_tick_ - first_tick_) / core_.sample_rate_hz;
+}
+
+const ConvergenceHistory::Row* TruckRun::newest() const noexcept {
+  return history_.rows().empty() ? nullptr : &history_.rows().back();
+}
+
+RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) {
+  identifier_->finish();
+  const RateCorrection correction = make_correction(rate, core_.sample_rate_hz, source);
+  const Snapshot raw = identifier_->snapshot();
+  if (!raw.valid) fail_unusable(raw, source);
+  history_.add(newest_tick_, raw);
+  const TruckRecord record{corrected(raw, correction),
+                           correction,
+                           rate,
+                           core_.sample_rate_hz * correction.ratio,
+                           first_tick_,
+                           newest_tick_};
+  RunResult result = describe_truck(record, config_.model);
+  result.latency_s = identifier_->motion_latency_s();
+  fill_history(history_.rows(), record, result);
+  fill_motion(excerpt_.best(), record, result);
+  result.warnings = clipping_.warnings();
+  result.excluded = excluded_.list();
+  result.excluded_more = excluded_.more();
+  return result;
+}
+
+void TruckRun::fail_unusable(const Snapshot& snapshot, const std::string& source) const {
+  const Counts& counts = snapshot.counts;
+  std::string why;
+  for (std::size_t i = 0; i < kStatuses; ++i) {
+    const std::string_view word = reason(static_cast<BlockStatus>(i));
+    if (!word.empty() && blocks_[i] > 0)
+      why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", blocks_[i], word);
+  }
+  throw RunError{
+      fmt::format("{}: nothing could be identified: {} samples in {} make {} blocks of 2 s, {} of "
+                  "them excluded{}; "
+                  "some ten usable blocks are needed",
+                  source, format_count(counts.samples), format_duration(time_s()), counts.blocks,
+                  counts.blocks_excluded + counts.blocks_still, why.empty() ? "" : ": " + why)};
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "app/config/config.hpp"
+#include "app/identify/clipping_watch.hpp"
+#include "app/identify/convergence_history.hpp"
+#include "app/identify/excluded_list.hpp"
+#include "app/identify/motion_excerpt.hpp"
+#include "app/identify/rate_correction.hpp"
+#include "app/run/result.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline::app {
+
+/// The core's settings from a configuration. Throws UsageError naming the key that a truck record
+/// cannot use.
+[[nodiscard]] IdentifierConfig identifier_config(const Config& config);
+
+/// One truck record through the core: takes samples, keeps what a report shows beside the result.
+/// Memory does not grow with the record.
+class TruckRun {
+ public:
+  /// `screen`: what is known of the channels; its rate is the configuration's.
+  explicit TruckRun(const Config& config, const ScreenConfig& screen = {});
+  void take(const Sample& sample);
+  [[nodiscard]] bool empty() const noexcept { return !started_; }
+  /// No more samples. Precondition: not empty(). Throws RunError naming `source` when nothing could
+  /// be identified, with the reasons, or when the measured rate is not the nominal one.
+  [[nodiscard]] RunResult finish(const MeasuredRate& rate, const std::string& source);
+
+  /// The newest sample, in seconds from the first; by the nominal rate.
+  [[nodiscard]] double time_s() const noexcept;
+  /// For the progress line: the newest row of the history, or null.
+  [[nodiscard]] const ConvergenceHistory::Row* newest() const noexcept;
+  /// The sufficient statistics, for state.dls. Call after finish().
+  void export_statistics(Statistics& out) { identifier_->export_statistics(out); }
+
+ private:
+  static constexpr std::size_t kStatuses = 7;
+
+  void note_block(const BlockReport& block);
+  [[nodiscard]] std::uint64_t blocks(BlockStatus status) const noexcept {
+    return blocks_[static_cast<std::size_t>(status)];
+  }
+  [[noreturn]] void fail_unusable(const Snapshot& snapshot, const std::string& source) const;
+
+  IdentifierConfig core_;
+  Config config_;
+  std::unique_ptr<Identifier> identifier_;
+  double block_ticks_;
+  bool started_{false};
+  std::int64_t first_tick_{0};
+  std::int64_t newest_tick_{0};
+  std::array<std::uint64_t, kStatuses> blocks_{};
+  ConvergenceHistory history_;
+  MotionExcerpt excerpt_;
+  ExcludedList excluded_;
+  ClippingWatch clipping_;
+};
+
+}  // namespace dampline::app

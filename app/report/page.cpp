@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "app/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "app/report/gnuplot.hpp"
+#include "app/report/html.hpp"
+#include "app/report/sections.hpp"
+#include "app/report/style.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::string_view kCurveText =
+    "The force with which the suspension resists motion, over the relative velocity. The band "
+    "holds "
+    "the truth in about 19 of 20 cases. In the grey zone the velocity is too uncertain to resolve "
+    "the curve. The strip at the bottom shows how many samples stand behind each part: where it is "
+    "low, the curve is little more than the straight continuation of its neighbours.";
+constexpr std::string_view kRigCurveText =
+    "The part of the measured force that resists motion, over the velocity. The band holds the "
+    "truth "
+    "in about 19 of 20 cases, provided that the model fits. The strip at the bottom shows how many "
+    "samples stand behind each part.";
+constexpr std::string_view kConvergenceText =
+    "The same parameters as they were known at each moment of the record. A line that has come to "
+    "rest inside a shrinking band is settled; one that still wanders is not.";
+constexpr std::string_view kMotionText =
+    "An excerpt of the motion between frame and wheelsets, y = 2 z_b - (z_1 + z_2), drift removed. "
+    "Slow deflection (below about 1 Hz) cannot be known from accelerations and is not shown.";
+constexpr std::string_view kRigMotionText = "An excerpt of the measured motion.";
+constexpr std::string_view kForceText =
+    "An excerpt of the measured force beside the force of the fitted model, over time and over "
+    "velocity. Where the two clouds part, the model lacks something.";
+
+/// Draws, and remembers the first reason why something could not be drawn.
+class Artist {
+ public:
+  std::string figure(const PlotScript& plot, const std::string& name, std::string_view caption) {
+    if (plot.script.empty()) return "";
+    const Drawing drawing = draw(plot, name);
+    if (warning_.empty()) warning_ = drawing.problem;
+    if (drawing.svg.empty())
+      return fmt::format("<p class=\"warning\">{}</p>\n", escape_html(drawing.problem));
+    return fmt::format("<figure>\n{}\n<figcaption>{}</figcaption></figure>\n", drawing.svg,
+                       escape_html(caption));
+  }
+  [[nodiscard]] const std::string& warning() const { return warning_; }
+
+ private:
+  std::string warning_;
+};
+
+std::string section(std::string_view title, const std::string& body) {
+  return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", title, body);
+}
+
+}  // namespace
+
+Page make_page(const RunResult& result, const Provenance& provenance, const std::string& run_toml) {
+  Artist artist;
+  const bool truck = result.kind == "truck";
+  std::string body = section("Damping curve", artist.figure(plot_curve(result), "curve",
+                                                            truck ? kCurveText : kRigCurveText));
+  body += section("Parameters", parameter_section(result));
+  body += section("Quality", quality_section(result));
+  body += section("How the estimate settled",
+                  artist.figure(plot_convergence(result), "convergence", kConvergenceText));
+  body +=
+      section("Measured and fitted force", artist.figure(plot_force(result), "force", kForceText));
+  body += section(
+      "Motion", artist.figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));
+  body += section("What was left out, and why",
+                  artist.figure(plot_excluded(result), "excluded", "") + excluded_section(result));
+  body += section("Where this comes from", provenance_section(provenance, run_toml));
+  const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
+  return {fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                      "<title>dampline: {0}</title>\n<style>{1}</style></head><body>\n"
+                      "<h1>dampline: {0}</h1>\n<p class=\"lead\">{2}</p>\n{3}{4}</body></html>\n",
+                      escape_html(name), kPageStyle, escape_html(result.headline),
+                      warning_section(result), body),
+          artist.warning()};
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "app/run/result.hpp"
+#include "app/run/run_toml.hpp"
+
+namespace dampline::app {
+
+struct Page {
+  std::string html;
+  std::string warning;  ///< not empty: the plots are missing, and why
+};
+
+/// The whole run as one self-contained page: no script, no link, drawings inline.
+[[nodiscard]] Page make_page(const RunResult& result, const Provenance& provenance,
+                             const std::string& run_toml);
+
+}  // namespace dampline::app

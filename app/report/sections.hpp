@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "app/run/result.hpp"
+#include "app/run/run_toml.hpp"
+
+namespace dampline::app {
+
+/// The parts of the page that are text and tables, as HTML.
+[[nodiscard]] std::string warning_section(const RunResult& result);
+[[nodiscard]] std::string parameter_section(const RunResult& result);
+[[nodiscard]] std::string quality_section(const RunResult& result);
+[[nodiscard]] std::string excluded_section(const RunResult& result);
+[[nodiscard]] std::string provenance_section(const Provenance& provenance,
+                                             const std::string& run_toml);
+
+}  // namespace dampline::app

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "app/run/files.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "app/error.hpp"
+#include "app/run/parameters_json.hpp"
+#include "app/run/tables.hpp"
+
+namespace dampline::app {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream stream{file, std::ios::binary};
+  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  if (!stream.is_open() || stream.bad())
+    throw RunError{fmt::format("{}: cannot be read", file.string())};
+  return text;
+}
+
+/// An extra table, which a run need not have.
+template <class Read>
+auto read_extra(const std::filesystem::path& file, Read read) {
+  using Table = decltype(read(std::string_view{}, std::string{}));
+  return std::filesystem::exists(file) ? read(read_text(file), file.string()) : Table{};
+}
+
+}  // namespace
+
+void stage_files(const RunFiles& files, RunDirectory& directory) {
+  const RunResult& result = files.result;
+  directory.write("parameters.json", to_json(result));
+  directory.write("curve.csv", to_csv(result.curve));
+  if (!files.state.empty()) directory.write("state.dls", files.state);
+  if (!result.convergence.rows.empty())
+    directory.write("convergence.csv", to_csv(result.convergence));
+  if (!result.motion.empty()) directory.write("motion.csv", to_csv(result.motion));
+  if (!result.force.empty()) directory.write("force.csv", to_csv(result.force));
+  directory.write("excluded.csv", to_csv(result.excluded));
+  directory.write("run.toml", files.run_toml);
+}
+
+RunFiles read_files(const std::filesystem::path& run) {
+  if (!std::filesystem::is_directory(run))
+    throw RunError{fmt::format("{}: is no directory", run.string())};
+  const std::filesystem::path marker = run / "run.toml";
+  if (!std::filesystem::exists(marker))
+    throw RunError{fmt::format("{}: is not a run directory: it holds no run.toml", run.string())};
+  RunFiles files;
+  files.run_toml = read_text(marker);
+  const auto parameters = run / "parameters.json";
+  files.result = from_json(read_text(parameters), parameters.string());
+  const auto curve = run / "curve.csv";
+  files.result.curve = read_curve(read_text(curve), curve.string());
+  files.result.convergence = read_extra(run / "convergence.csv", read_convergence);
+  files.result.motion = read_extra(run / "motion.csv", read_motion);
+  files.result.force = read_extra(run / "force.csv", read_force);
+  files.result.excluded = read_extra(run / "excluded.csv", read_excluded);
+  return files;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "app/run/parameters_json.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "app/error.hpp"
+
+namespace dampline::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json estimate(const std::optional<Estimate>& value) {
+  if (!value) return nullptr;
+  return {{"value", value->value}, {"std", value->std}, {"unit", "Hz"}};
+}
+
+Json parameters(const RunResult& result) {
+  Json list = Json::array();
+  for (const Parameter& p : result.parameters)
+    list.push_back({{"name", p.name}, {"value", p.value}, {"std", p.std}, {"unit", p.unit}});
+  return list;
+}
+
+double read_number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+std::optional<double> read_optional(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return json.get<double>();
+}
+
+void read_parameters(const Json& list, RunResult& result) {
+  for (const Json& p : list)
+    result.parameters.push_back({p.at("name"), read_number(p.at("value")), read_number(p.at("std")),
+                                 p.at("unit").get<std::string>()});
+}
+
+RunResult read_result(const Json& json) {
+  RunResult result;
+  result.kind = json.at("kind");
+  result.headline = json.at("headline");
+  result.model = json.at("model");
+  read_parameters(json.at("parameters"), result);
+  for (const auto& [name, count] : json.at("counts").items())
+    result.counts.emplace_back(name, count.get<std::uint64_t>());
+  const Json& fit = json.at("fit");
+  result.fit = {read_optional(fit.at("nmse")), read_optional(fit.at("rrse")),
+                read_optional(fit.at("held_out_nmse"))};
+  result.std_is_lower_bound = json.at("std_is_lower_bound");
+  result.stick_share = read_optional(json.at("stick_share"));
+  result.excitation = read_optional(json.at("excitation"));
+  result.asymmetry = json.at("asymmetry");
+  if (const Json& rate = json.at("sample_rate"); !rate.is_null())
+    result.sample_rate_hz = Estimate{read_number(rate.at("value")), read_number(rate.at("std"))};
+  result.latency_s = read_optional(json.at("latency_s"));
+  result.duration_s = json.at("duration_s");
+  result.excluded_more = json.at("excluded_more");
+  result.warnings = json.at("warnings");
+  result.notes = json.at("notes");
+  return result;
+}
+
+}  // namespace
+
+std::string to_json(const RunResult& result) {
+  Json counts = Json::object();
+  for (const auto& [name, count] : result.counts) counts[name] = count;
+  const Json json{{"parameters", parameters(result)},
+                  {"counts", counts},
+                  {"fit",
+                   {{"nmse", number(result.fit.nmse)},
+                    {"rrse", number(result.fit.rrse)},
+                    {"held_out_nmse", number(result.fit.held_out_nmse)}}},
+                  {"kind", result.kind},
+                  {"headline", result.headline},
+                  {"model", result.model},
+                  {"std_is_lower_bound", result.std_is_lower_bound},
+                  {"stick_share", number(result.stick_share)},
+                  {"excitation", number(result.excitation)},
+                  {"asymmetry", result.asymmetry},
+                  {"sample_rate", estimate(result.sample_rate_hz)},
+                  {"latency_s", number(result.latency_s)},
+                  {"duration_s", result.duration_s},
+                  {"excluded_more", result.excluded_more},
+                  {"warnings", result.warnings},
+                  {"notes", result.notes}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+RunResult from_json(std::string_view text, const std::string& origin) {
+  try {
+    return read_result(Json::parse(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw RunError{fmt::format("{}: not the parameters of a run: {}", origin, error.what())};
+  }
+}
+
+}  // namespace dampline::app

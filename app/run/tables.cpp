@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "app/run/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <functional>
+
+#include "app/error.hpp"
+
+namespace dampline::app {
+namespace {
+
+using Cells = std::vector<std::string_view>;
+
+std::string_view next_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+Cells split(std::string_view line) {
+  Cells cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t comma = std::min(line.find(',', begin), line.size());
+    cells.push_back(line.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return cells;
+}
+
+double number(std::string_view cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size())
+    throw RunError{fmt::format("\"{}\" is no number", cell)};
+  return value;
+}
+
+/// Calls `row` with the cells of each line after the header; returns the header's cells.
+std::vector<std::string> read_rows(std::string_view text, const std::string& origin,
+                                   const std::function<void(const Cells&)>& row) {
+  const Cells header = split(next_line(text));
+  for (int line = 2; !text.empty(); ++line) {
+    const Cells cells = split(next_line(text));
+    try {
+      if (cells.size() != header.size())
+        throw RunError{fmt::format("{} cells, expected {}", cells.size(), header.size())};
+      row(cells);
+    } catch (const RunError& error) {
+      throw RunError{fmt::format("{}:{}: {}", origin, line, error.what())};
+    }
+  }
+  return {header.begin(), header.end()};
+}
+
+}  // namespace
+
+std::string to_csv(const std::vector<CurveRow>& curve) {
+  std::string out = "velocity_mps,force_n,std_n,samples\n";
+  for (const CurveRow& r : curve)
+    out += fmt::format("{:.9g},{:.9g},{:.6g},{}\n", r.velocity_mps, r.force_n, r.std_n, r.samples);
+  return out;
+}
+
+std::string to_csv(const Convergence& convergence) {
+  std::string out = "time_s";
+  for (std::size_t i = 0; i < convergence.names.size(); ++i)
+    out += fmt::format(",{0} [{1}],{0}_std [{1}]", convergence.names[i], convergence.units[i]);
+  out += '\n';
+  for (const Convergence::Row& row : convergence.rows) {
+    out += fmt::format("{:.9g}", row.time_s);
+    for (const Estimate& e : row.estimates) out += fmt::format(",{:.9g},{:.6g}", e.value, e.std);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string to_csv(const std::vector<MotionRow>& motion) {
+  std::string out = "time_s,deflection_m,velocity_mps\n";
+  for (const MotionRow& r : motion)
+    out += fmt::format("{:.9g},{:.6g},{:.6g}\n", r.time_s, r.deflection_m, r.velocity_mps);
+  return out;
+}
+
+std::string to_csv(const std::vector<ForceRow>& force) {
+  std::string out = "time_s,velocity_mps,measured_n,fitted_n\n";
+  for (const ForceRow& r : force)
+    out += fmt::format("{:.9g},{:.6g},{:.6g},{:.6g}\n", r.time_s, r.velocity_mps, r.measured_n,
+                       r.fitted_n);
+  return out;
+}
+
+std::string to_csv(const std::vector<Excluded>& excluded) {
+  std::string out = "start_s,end_s,reason\n";
+  for (const Excluded& r : excluded)
+    out += fmt::format("{:.9g},{:.9g},{}\n", r.start_s, r.end_s, r.reason);
+  return out;
+}
+
+std::vector<CurveRow> read_curve(std::string_view text, const std::string& origin) {
+  std::vector<CurveRow> curve;
+  read_rows(text, origin, [&](const Cells& c) {
+    curve.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)),
+                     static_cast<std::uint64_t>(number(c.at(3)))});
+  });
+  return curve;
+}
+
+Convergence read_convergence(std::string_view text, const std::string& origin) {
+  Convergence convergence;
+  const auto header = read_rows(text, origin, [&](const Cells& c) {
+    Convergence::Row row{number(c.at(0)), {}};
+    for (std::size_t i = 1; i + 1 < c.size(); i += 2)
+      row.estimates.push_back({number(c[i]), number(c[i + 1])});
+    convergence.rows.push_back(std::move(row));
+  });
+  for (std::size_t i = 1; i + 1 < header.size(); i += 2) {
+    const std::string& name = header[i];
+    const std::size_t bracket = name.find(" [");
+    convergence.names.push_back(name.substr(0, bracket));
+    convergence.units.push_back(
+        bracket == std::string::npos ? "" : name.substr(bracket + 2, name.size() - bracket - 3));
+  }
+  return convergence;
+}
+
+std::vector<MotionRow> read_motion(std::string_view text, const std::string& origin) {
+  std::vector<MotionRow> motion;
+  read_rows(text, origin, [&](const Cells& c) {
+    motion.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2))});
+  });
+  return motion;
+}
+
+std::vector<ForceRow> read_force(std::string_view text, const std::string& origin) {
+  std::vector<ForceRow> force;
+  read_rows(text, origin, [&](const Cells& c) {
+    force.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)), number(c.at(3))});
+  });
+  return force;
+}
+
+std::vector<Excluded> read_excluded(std::string_view text, const std::string& origin) {
+  std::vector<Excluded> excluded;
+  read_rows(text, origin, [&](const Cells& c) {
+    excluded.push_back({number(c.at(0)), number(c.at(1)), std::string{c.at(2)}});
+  });
+  return excluded;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=bash disable=SC2034
+# Sourced by app/quickstart, tests/run and .ci/run: what they install and how they build.
+
+# Name and purpose, one package a line.
+readonly program_packages="
+cmake                the build is described in CMake
+ninja-build          runs the build
+g++                  compiles it
+libeigen3-dev        small matrices (the core's only library)
+libcli11-dev         the command line
+libtomlplusplus-dev  configuration files
+nlohmann-json3-dev   parameters.json
+libfmt-dev           text output
+libspdlog-dev        log messages
+gnuplot-nox          draws the plots of report.html
+nettle-dev           SHA-256 of the input files
+"
+readonly test_packages="
+libgtest-dev         the tests' framework
+libgmock-dev         its matchers
+libbenchmark-dev     the programs in bench/
+binutils             nm, which lists the core's symbols
+valgrind             counts instructions per sample
+"
+
+fail() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 1
+}
+
+# install_packages LIST: installs what is missing, asks for nothing, says what and why.
+install_packages() {
+  local name purpose missing=()
+  if ! command -v dpkg-query >/dev/null; then
+    printf 'No dpkg here, so nothing is installed. On another system than Debian, provide:%s' "$1"
+    return
+  fi
+  while read -r name purpose; do
+    [[ -n $name ]] || continue
+    # shellcheck disable=SC2016  # a format of dpkg-query, not of the shell
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) == installed ]] && continue
+    ((${#missing[@]})) || printf 'Installing from Debian:\n'
+    printf '  %-20s %s\n' "$name" "$purpose"
+    missing+=("$name")
+  done <<<"$1"
+  ((${#missing[@]})) || return 0
+  local as_root=()
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null ||
+      fail "installing needs root, and there is no sudo; as root run: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  as_root+=(env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 apt-get -q -o Dpkg::Use-Pty=0)
+  mkdir -p build
+  { "${as_root[@]}" update &&
+    "${as_root[@]}" install -y --no-install-recommends "${missing[@]}"; } >build/install.log 2>&1 || {
+    tail -n 20 build/install.log >&2
+    fail "apt-get failed (all of its output: build/install.log)"
+  }
+}
+
+# is_configured FOLDER [CMake options]: the folder holds a build of this source tree, so configured.
+is_configured() {
+  local folder=$1 option
+  shift
+  [[ -f $folder/build.ninja ]] || return 1
+  for option in "CMAKE_HOME_DIRECTORY=$PWD" "${@#-D}"; do
+    grep -qs "^${option%%=*}:[A-Z]*=${option#*=}\$" "$folder/CMakeCache.txt" || return 1
+  done
+}
+
+# configure PRESET FOLDER [CMake options]: only where that was not done yet; later changes of
+# CMake files are noticed by the build itself.
+configure() {
+  local preset=$1 folder=$2
+  shift 2
+  is_configured "$folder" "$@" && return
+  mkdir -p build
+  cmake --fresh --preset "$preset" -B "$folder" "$@" >"$folder.log" 2>&1 || {
+    cat "$folder.log" >&2
+    fail "cmake failed"
+  }
+}
+
+# run_tests FOLDER [ctest options]: sets passed, failed and skipped; never ends the script.
+run_tests() {
+  local folder=$1 total
+  shift
+  local report=$PWD/$folder/tests.xml
+  rm -f "$report"
+  passed=0 failed=1 skipped=0
+  ctest --test-dir "$folder" --output-on-failure --output-junit "$report" "$@" || true
+  [[ -f $report ]] || return 0
+  total=$(grep -c '^[[:space:]]*<testcase ' "$report" || true)
+  passed=$(grep -c '^[[:space:]]*<testcase .* status="run">' "$report" || true)
+  skipped=$(grep -c '<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"' "$report" || true)
+  failed=$((total - passed - skipped))  # what could not be started has failed
+  ((total > 0)) || failed=1
+}

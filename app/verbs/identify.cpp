@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "app/verbs/identify.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/config/config.hpp"
+#include "app/identify/identify_source.hpp"
+#include "app/report/page.hpp"
+#include "app/run/directory.hpp"
+#include "app/run/files.hpp"
+#include "app/run/parameters_json.hpp"
+#include "app/run/run_toml.hpp"
+#include "app/text/summary.hpp"
+
+namespace dampline::app {
+namespace {
+
+struct Options {
+  SourceOptions source;
+  std::string config;
+  std::string out;
+  bool json{false};
+  bool quiet{false};
+  bool force{false};
+  bool no_report{false};
+};
+
+void warn(const std::string& text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
+
+std::filesystem::path place_of(const Options& options) {
+  if (!options.out.empty()) return options.out;
+  const std::string stem = options.source.path == "-"
+                               ? "stdin"
+                               : std::filesystem::path{options.source.path}.stem().string();
+  return free_run_name(std::filesystem::current_path(), stem);
+}
+
+void stage_report(const RunFiles& files, RunDirectory& directory) {
+  const Page page =
+      make_page(files.result, read_provenance(files.run_toml, "run.toml"), files.run_toml);
+  if (!page.warning.empty()) warn(page.warning);
+  directory.write("report.html", page.html);
+}
+
+void print_result(const Options& options, const RunResult& result,
+                  const std::filesystem::path& place) {
+  if (options.json) fmt::print("{}", to_json(result));
+  if (options.json || options.quiet) return;
+  fmt::print("{}  {:<20} {}\n", summarize(result), options.no_report ? "results" : "report",
+             (options.no_report ? place : place / "report.html").string());
+}
+
+int identify(const Options& options) {
+  const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  const std::filesystem::path place = place_of(options);
+  RunDirectory directory{place,
+                         options.force};  // first: a place that cannot be written costs no work
+  const bool progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  Identified found = identify_source(config, options.source, progress);
+  const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
+                       std::move(found.state)};
+  stage_files(files, directory);
+  if (!options.no_report) stage_report(files, directory);
+  directory.commit();
+  print_result(options, files.result, place);
+  return 0;
+}
+
+}  // namespace
+
+void add_identify_verb(CLI::App& program, std::function<int()>& action) {
+  CLI::App* verb = program.add_subcommand(
+      "identify", "Turn a recorded run into a damping curve with its uncertainty");
+  const auto options = std::make_shared<Options>();
+  verb->add_option("SOURCE", options->source.path,
+                   "FILE.log (candump), FILE.csv, or - for candump text on standard input")
+      ->required();
+  verb->add_option("--config", options->config,
+                   "configuration (TOML); without it CSV files work by "
+                   "their header and candump logs by the project's DBC");
+  verb->add_option("--out", options->out,
+                   "run directory; default: a new one named after the source");
+  verb->add_flag("--force", options->force, "replace an earlier run in --out");
+  verb->add_flag("--json", options->json, "print parameters.json instead of a table");
+  verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
+  verb->add_flag("--skip-bad-lines", options->source.skip_bad_lines,
+                 "count malformed lines instead of stopping at the first");
+  verb->add_flag("--no-report", options->no_report, "do not draw report.html");
+  verb->callback([options, &action] { action = [options] { return identify(*options); }; });
+}
+
+}  // namespace dampline::app

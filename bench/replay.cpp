@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// How fast a recorded run is replayed, decoding included, and how much memory that takes.
+// `replay PROGRAM [--day]`: PROGRAM is the built dampline; --day adds 24 hours through a pipe.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Usage {
+  double cpu_s{0.0};
+  double peak_mib{0.0};
+  bool ok{false};
+};
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+/// Runs a shell command and returns what it used; `exec` in the command makes it one process.
+Usage run(const std::string& command) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  int status = 0;
+  rusage usage{};
+  if (wait4(child, &status, 0, &usage) != child) return {};
+  return {.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime),
+          .peak_mib = static_cast<double>(usage.ru_maxrss) / 1024.0,
+          .ok = WIFEXITED(status) && WEXITSTATUS(status) == 0};
+}
+
+void print_row(std::string_view name, double record_s, const Usage& usage) {
+  fmt::print("| {} | {:.2f} | {:.0f} | {:.1f} |{}\n", name, usage.cpu_s, record_s / usage.cpu_s,
+             usage.peak_mib, usage.ok ? "" : " failed");
+  std::fflush(stdout);
+}
+
+/// Writes a record with its configuration, and identifies it from the file.
+void replay_file(const std::string& program, const fs::path& folder, int minutes) {
+  const std::string log = (folder / fmt::format("run{}.log", minutes)).string();
+  const std::string config = (folder / "run.toml").string();
+  const std::string dbc = (folder / "sensors.dbc").string();
+  const Usage made = run(fmt::format(
+      "exec '{}' simulate --quiet --duration {} --out '{}' --dbc '{}' --config-out '{}'", program,
+      60 * minutes, log, dbc, config));
+  if (!made.ok) return fmt::print("could not simulate with {}\n", program);
+  const Usage used = run(
+      fmt::format("exec '{}' identify --quiet --no-report --config '{}' --out '{}' '{}' >/dev/null",
+                  program, config, (folder / fmt::format("run{}", minutes)).string(), log));
+  print_row(fmt::format("{} min, candump file", minutes), 60.0 * minutes, used);
+}
+
+/// A day, from the simulator's pipe: no file of that size, and only identify is measured.
+void replay_day(const std::string& program, const fs::path& folder) {
+  const std::string pipe = (folder / "pipe").string();
+  const Usage used =
+      run(fmt::format("mkfifo '{0}'; '{1}' simulate --quiet --duration 86400 --format candump "
+                      "--out '{0}' & exec '{1}' identify --quiet "
+                      "--no-report --config '{2}' --out '{3}' - <'{0}' >/dev/null",
+                      pipe, program, (folder / "run.toml").string(), (folder / "day").string()));
+  print_row("24 h, candump pipe", 86400.0, used);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print("usage: replay PROGRAM [--day]\n");
+    return 2;
+  }
+  const std::string program = argv[1];
+  std::string pattern = (fs::temp_directory_path() / "dampline-replay-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) return 1;
+  const fs::path folder = pattern;
+  fmt::print("| record | CPU time in s | times real time | peak memory in MiB |\n|--|--|--|--|\n");
+  replay_file(program, folder, 5);
+  replay_file(program, folder, 20);
+  if (argc > 2 && std::string_view{argv[2]} == "--day") replay_day(program, folder);
+  fs::remove_all(folder);
+  return EXIT_SUCCESS;
+}

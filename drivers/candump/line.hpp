@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "dampline/sample/can_frame.hpp"
+
+namespace dampline::drivers {
+
+/// What is wrong with a line that begins like one of candump's, and where.
+struct CandumpFault {
+  const char* expected{nullptr};  ///< null: nothing
+  const char* at{nullptr};        ///< first character that does not fit
+};
+
+/// Reads one line of a candump log (can-utils): `(sec.frac) iface ID#DATA`, also `ID##<flags>DATA`
+/// for CAN FD, `ID#R` or `ID#R<length>` for a remote request, 6 or 9 decimals, and an optional
+/// direction ` R` or ` T`. Three hexadecimal digits are a standard identifier, eight an extended
+/// one; an eight- digit one with bit 29 set is an error frame. Sets all of the frame but
+/// interface_index, and the interface's name, 1...15 characters. Precondition: the character behind
+/// the line can be read and is none of 0-9 a-f A-F; it is \n or \r or 0 in practice.
+class CandumpLine {
+ public:
+  [[nodiscard]] CandumpFault parse(std::string_view line, CanFrame& frame) noexcept;
+  [[nodiscard]] std::string_view interface_name() const noexcept { return interface_; }
+
+ private:
+  std::string_view interface_;
+};
+
+}  // namespace dampline::drivers

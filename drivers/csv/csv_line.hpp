@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dampline::drivers {
+
+/// Takes the next cell off the front of a line: up to the separator, blanks and quotes cut off.
+/// `more` is false when it was the last.
+std::string_view take_cell(std::string_view& rest, char separator, bool& more) noexcept;
+
+/// The separator that a header line uses: the most frequent of , ; and tab outside quotes.
+char separator_of(std::string_view header) noexcept;
+
+/// The names of a header line.
+std::vector<std::string> cells_of(std::string_view header, char separator);
+
+/// Reads a number: decimal or nan or inf in any case, with an optional +; an empty cell is NaN.
+/// Where the separator is not a comma, a decimal comma is read as a point. False when it is
+/// anything else.
+bool read_number(std::string_view cell, char separator, double& number) noexcept;
+
+}  // namespace dampline::drivers

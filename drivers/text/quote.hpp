@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace dampline::drivers {
+
+/// Input as it may be shown to a person: in quotes, bytes that do not print as \xNN, and the
+/// beginning only when it is long. An empty text is "nothing".
+std::string quote(std::string_view text);
+
+/// Of many names the ones nearest to the wanted one, by edit distance without regard to case, as
+/// "A, B, C"; at most `most` of them.
+std::string nearest_names(std::string_view wanted, const std::string* names, std::size_t count,
+                          std::size_t most = 5);
+
+}  // namespace dampline::drivers

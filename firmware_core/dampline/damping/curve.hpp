@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+
+#include "dampline/estimate/law_profile.hpp"
+#include "dampline/snapshot.hpp"
+
+namespace dampline {
+
+/// Right ends of the segments, increasing, m/s.
+using CurveNodes = std::array<double, kCurveSegments>;
+
+/// An odd broken line over |v| with a jump at zero, per unit of moving mass:
+///   F(v) / M = sign(v) [jump g(v / w*) + sum_i slope_i ramp_i(|v|)].
+struct CurveFit {
+  static constexpr int kJump = 0;
+  static constexpr int kStiffness = 1;
+  static constexpr int kFirstSlope = 2;
+  static constexpr int kUnknowns = kFirstSlope + static_cast<int>(kCurveSegments);
+  WeightedFit<kUnknowns> fit;
+  WeightedFit<kUnknowns>::Square covariance = WeightedFit<kUnknowns>::Square::Zero();
+
+  /// The law's width is taken from `law`, the broken line is fitted beside the spring.
+  static CurveFit make(const ScaleFactors& total, EntryList entries, const LawProfile<true>& law,
+                       const ScaleMask& mask, const CurveNodes& nodes_mps) noexcept;
+
+  /// Force per unit of mass at a positive velocity, and its standard deviation.
+  [[nodiscard]] Estimate force(double velocity_mps, double width_mps,
+                               const CurveNodes& nodes_mps) const noexcept;
+};
+
+}  // namespace dampline

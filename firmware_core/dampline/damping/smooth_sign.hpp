@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace dampline {
+namespace detail {
+
+inline constexpr std::size_t kErfPerUnit = 256;
+inline constexpr double kErfLimit = 4.0;
+inline constexpr std::size_t kErfSize = static_cast<std::size_t>(kErfLimit) * kErfPerUnit + 2;
+
+constexpr double erf_series(double x) noexcept {
+  double term = x;
+  double sum = x;
+  for (int n = 1; n < 80; ++n) {
+    term *= -x * x / n;
+    sum += term / (2 * n + 1);
+    if (term < 1e-17 && term > -1e-17) break;
+  }
+  return 1.1283791670955126 * sum;
+}
+
+constexpr std::array<float, kErfSize> make_erf_table() noexcept {
+  std::array<float, kErfSize> table{};
+  for (std::size_t i = 0; i < kErfSize; ++i) {
+    table[i] = static_cast<float>(erf_series(static_cast<double>(i) / kErfPerUnit));
+  }
+  return table;
+}
+inline constexpr std::array<float, kErfSize> kErfTable = make_erf_table();
+
+}  // namespace detail
+
+/// erf by a table made at compile time, so that it is the same on every machine; error below 2e-6.
+inline double erf_table(double x) noexcept {
+  const double magnitude = std::abs(x);
+  // NaN must not become an index.
+  if (!(magnitude < detail::kErfLimit)) return std::copysign(1.0, x);
+  const double position = magnitude * detail::kErfPerUnit;
+  const auto i = static_cast<std::size_t>(position);
+  const double below{detail::kErfTable[i]};
+  const double above{detail::kErfTable[i + 1]};
+  return std::copysign(below + (position - static_cast<double>(i)) * (above - below), x);
+}
+
+/// sqrt(pi) / 2: erf(kSignSlope v / w) has slope 1 / w at v = 0.
+inline constexpr double kSignSlope = 0.886226925452758;
+
+/// The expected sign of a velocity that is known with a Gaussian error: erf(0.8862 v / w).
+/// `width_mps` gathers that error and the rounding of the friction law itself.
+inline double smooth_sign(double velocity_mps, double width_mps) noexcept {
+  return erf_table(kSignSlope * velocity_mps / width_mps);
+}
+
+}  // namespace dampline

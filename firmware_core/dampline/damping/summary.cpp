@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/damping/summary.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "dampline/damping/curve.hpp"
+#include "dampline/estimate/law_profile.hpp"
+
+namespace dampline {
+namespace {
+
+// Errors that the scatter of the blocks does not show, of the value itself: discretisation of the
+// law, the shape of the law near v = 0, correlated velocity errors.
+constexpr double kCoulombFloor = 0.0010;
+constexpr double kStiffnessFloor = 0.0030;
+constexpr double kViscousFloor = 0.0030;  // of Fc / v_rms
+// The 32 Hz scale fits between sticks and sharpens the friction law, but knows nothing of
+// stiffness.
+constexpr ScaleMask kAllScales{true, true, true, true, true};
+constexpr ScaleMask kLongScales{true, true, true, true, false};
+constexpr double kValidStickShare = 0.25;
+constexpr double kValidWidthMps = 3.0e-3;
+constexpr std::size_t kFolds = 5;
+constexpr std::size_t kFewestEntries = 4;  // below, a deviation says nothing
+
+double floored(double std, double floor) noexcept { return std::sqrt(std * std + floor * floor); }
+
+double stick_share(const VelocityCounts& v) noexcept {
+  return v.moving > 0 ? static_cast<double>(v.sticking) / static_cast<double>(v.moving) : 0.0;
+}
+
+struct Context {
+  const StatisticsHeader& header;
+  const ScaleFactors& total;
+  EntryList entries;
+  double mass_kg;
+  double blocks_factor;
+};
+
+/// What one model says: friction from all scales, stiffness from the long ones.
+template <bool Viscous>
+struct LawResult {
+  using Profile = LawProfile<Viscous>;
+  using Model = typename Profile::Model;
+  using Deviations = typename WeightedFit<Model::kUnknowns>::Vector;
+  Profile law;
+  Estimate coulomb, stiffness, width, viscous;
+  double nmse{0.0};
+  double held_out_nmse{0.0};
+  bool ok{false};
+
+  static LawResult make(const Context& c) noexcept {
+    LawResult out;
+    out.law = Profile::make(c.total, kAllScales);
+    const auto long_law = Profile::make(c.total, kLongScales);
+    out.ok = out.law.fit.ok && long_law.fit.ok;
+    if (!out.ok) return out;
+    const auto& theta = out.law.fit.theta;
+    const Deviations std = deviations(c, out.law);
+    const double coulomb = theta[Model::kCoulomb];
+    const double stiffness = long_law.fit.theta[Model::kStiffness];
+    out.coulomb = {coulomb, floored(std[Model::kCoulomb], kCoulombFloor * coulomb)};
+    out.stiffness = {stiffness, floored(deviations(c, long_law)[Model::kStiffness],
+                                        kStiffnessFloor * stiffness)};
+    out.width = {out.law.width_mps(), std[Model::kWidthChange] / coulomb * out.law.span_mps()};
+    if constexpr (Viscous) out.viscous = {theta[Model::kViscous], std[Model::kViscous]};
+    out.nmse = out.law.fit.weighted_residual / out.law.fit.weighted_total;
+    out.held_out_nmse =
+        c.entries.size() >= kFolds
+            ? held_out_nmse_of<Model::kUnknowns>(out.law.fit, c.entries, out.law.map, kFolds)
+            : std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
+
+ private:
+  static Deviations deviations(const Context& c, const Profile& law) noexcept {
+    const auto covariance = score_covariance<Model::kUnknowns>(law.fit, c.entries, law.map);
+    return c.blocks_factor * covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+};
+
+Estimate operator*(double factor, const Estimate& e) noexcept {
+  return {factor * e.value, factor * e.std};
+}
+
+void fill_law(const Context& c, const LawResult<false>& law, Snapshot& out) noexcept {
+  out.coulomb_n = c.mass_kg * law.coulomb;
+  out.stiffness_npm = c.mass_kg * law.stiffness;
+  out.law_width_mps = law.width;
+  out.nmse = law.nmse;
+  out.held_out_nmse = law.held_out_nmse;
+}
+
+void fill_viscous(const Context& c, const LawResult<true>& law, Snapshot& out) noexcept {
+  const double floor =
+      out.velocity_rms_mps > 0.0 ? kViscousFloor * law.coulomb.value / out.velocity_rms_mps : 0.0;
+  out.viscous_nspm = c.mass_kg * Estimate{law.viscous.value, floored(law.viscous.std, floor)};
+  out.coulomb_with_viscous_n = c.mass_kg * law.coulomb;
+  out.stiffness_with_viscous_npm = c.mass_kg * law.stiffness;
+  out.law_width_with_viscous_mps = law.width;
+  out.nmse_with_viscous = law.nmse;
+  out.held_out_nmse_with_viscous = law.held_out_nmse;
+}
+
+/// The broken line holds any viscous part, so its jump has the width of the model that has one.
+void fill_curve(const Context& c, const LawProfile<true>& law, Snapshot& out) noexcept {
+  const auto curve = CurveFit::make(c.total, c.entries, law, kAllScales, c.header.curve_nodes_mps);
+  if (!curve.fit.ok) return;
+  const double jump = curve.fit.theta[CurveFit::kJump];
+  const double jump_std = std::sqrt(curve.covariance(CurveFit::kJump, CurveFit::kJump));
+  out.curve_force_at_zero_n = c.mass_kg * jump;
+  out.curve_std_at_zero_n = c.mass_kg * floored(c.blocks_factor * jump_std, kCoulombFloor * jump);
+  for (std::size_t i = 0; i < kCurveSegments; ++i) {
+    const double v_mps = c.header.curve_nodes_mps[i];
+    const Estimate f = curve.force(v_mps, law.width_mps(), c.header.curve_nodes_mps);
+    out.curve[i] = {.velocity_mps = v_mps,
+                    .force_n = c.mass_kg * f.value,
+                    .std_n = c.mass_kg * floored(c.blocks_factor * f.std, kCoulombFloor * f.value),
+                    .samples = c.header.velocity.positive[i]};
+    out.samples_negative[i] = c.header.velocity.negative[i];
+  }
+}
+
+void fill_motion(const StatisticsHeader& header, Snapshot& out) noexcept {
+  const VelocityCounts& v = header.velocity;
+  if (v.moving > 0) out.velocity_rms_mps = std::sqrt(v.sum_squares / static_cast<double>(v.moving));
+  out.stick_share = stick_share(v);
+  out.noise_mps2 = header.noise_mps2;
+}
+
+}  // namespace
+
+Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
+                   const SummaryConfig& config) noexcept {
+  Snapshot out;
+  out.tick = header.newest_tick;
+  out.counts = header.counts;
+  out.blocks_in_estimate = total.blocks;
+  if (header.counts.blocks > 0) {
+    out.excitation = 1.0 - static_cast<double>(header.counts.blocks_still) /
+                               static_cast<double>(header.counts.blocks);
+  }
+  fill_motion(header, out);
+  if (entries.size() < kFewestEntries) return out;
+  const Context context{.header = header,
+                        .total = total,
+                        .entries = entries,
+                        .mass_kg = config.moving_mass_kg,
+                        .blocks_factor = short_record_factor(static_cast<double>(entries.size()))};
+  const auto law = LawResult<false>::make(context);
+  const auto viscous_law = LawResult<true>::make(context);
+  out.valid = law.ok && viscous_law.ok;
+  if (!out.valid) return out;
+  fill_law(context, law, out);
+  fill_viscous(context, viscous_law, out);
+  fill_curve(context, viscous_law.law, out);
+  const bool sticks = out.stick_share > kValidStickShare;
+  out.std_is_lower_bound = sticks || law.width.value > kValidWidthMps;
+  out.std_with_viscous_is_lower_bound = sticks || viscous_law.width.value > kValidWidthMps;
+  return out;
+}
+
+Snapshot summarise(const Statistics& statistics, const SummaryConfig& config) noexcept {
+  std::array<const ScaleFactors*, kEntries> entries{};
+  for (std::size_t i = 0; i < kEntries; ++i) entries[i] = &statistics.entries[i];
+  return summarise(statistics.header, statistics.total,
+                   EntryList{entries}.first(statistics.header.entry_count), config);
+}
+
+}  // namespace dampline

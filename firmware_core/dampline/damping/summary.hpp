@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "dampline/estimate/statistics.hpp"
+#include "dampline/snapshot.hpp"
+
+namespace dampline {
+
+struct SummaryConfig {
+  double moving_mass_kg{0.0};
+};
+
+/// Everything that the statistics say: law, stiffness, curve, deviations, errors. Some
+/// milliseconds of work; not for the sample path.
+[[nodiscard]] Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total,
+                                 EntryList entries, const SummaryConfig& config) noexcept;
+[[nodiscard]] Snapshot summarise(const Statistics& statistics,
+                                 const SummaryConfig& config) noexcept;
+
+}  // namespace dampline

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/identifier.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline {
+namespace {
+
+using Fault = BlockLedger::Fault;
+
+constexpr double kMinRateHz = 150.0;
+constexpr double kStillMps = 2.0e-3;
+constexpr double kQuietInputMps2 = 0.2;  // rms change of the wheelsets' mean from sample to sample
+constexpr double kStickMps = 2.0e-3;
+constexpr double kActivityTimeS = 0.25;
+constexpr double kStillShareLimit = 0.5;
+constexpr std::int64_t kCornerDecision = 600;  // samples of noise before the corner is chosen
+constexpr double kNoiseForHighCornerMps2 = 0.05;
+
+std::size_t nearest_node(const std::array<double, kCurveSegments>& nodes, double speed) noexcept {
+  std::size_t i = 0;
+  while (i + 1 < kCurveSegments && speed > 0.5 * (nodes[i] + nodes[i + 1])) ++i;
+  return i;
+}
+
+}  // namespace
+
+Result<IdentifierConfig> Identifier::check(const IdentifierConfig& config) noexcept {
+  const double rate = config.sample_rate_hz;
+  if (!(rate >= kMinRateHz && rate <= WindowBank::kMaxRateHz)) return Errc::kInvalidConfig;
+  if (!(config.moving_mass_kg > 0.0) || !std::isfinite(config.moving_mass_kg)) {
+    return Errc::kInvalidConfig;
+  }
+  const double corner = config.velocity_corner_hz;
+  if (corner != 0.0 && corner != 0.7 && corner != 1.0) return Errc::kInvalidConfig;
+  double left = 0.0;
+  for (const double node : config.curve_nodes_mps) {
+    if (!(node > left && node < 10.0)) return Errc::kInvalidConfig;
+    left = node;
+  }
+  if (!SampleScreen::check(screen_config(config)).ok()) return Errc::kInvalidConfig;
+  if (!(config.anti_alias.corner_hz >= 0.0) || config.anti_alias.order < 1 ||
+      config.anti_alias.order > 8) {
+    return Errc::kInvalidConfig;
+  }
+  if (config.memory != Memory::kInfinite &&
+      !(config.memory_s >= kBlockS && std::isfinite(config.memory_s))) {
+    return Errc::kInvalidConfig;
+  }
+  return config;
+}
+
+Identifier::Identifier(const IdentifierConfig& config) noexcept
+    : config_{config},
+      step_s_{1.0 / config.sample_rate_hz},
+      block_ticks_{std::lround(kBlockS * config.sample_rate_hz)},
+      screen_{screen_config(config)},
+      lift_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps()},
+      velocity_{config.sample_rate_hz},
+      deflection_{config.sample_rate_hz},
+      law_{config.curve_nodes_mps},
+      rows_{config.sample_rate_hz},
+      store_{{.memory = config.memory, .memory_blocks = config.memory_s / kBlockS}} {
+  row_reach_ = velocity_delay() + rows_.bank().half(0) + 2;
+  for (std::size_t s = 0; s < kScales; ++s) {
+    rows_per_block_ += static_cast<std::uint32_t>(block_ticks_ / rows_.bank().stride(s));
+  }
+  if (config.velocity_corner_hz != 0.0) {
+    velocity_.set_corner(config.velocity_corner_hz > 0.85 ? Baseline::Corner::k1p0Hz
+                                                          : Baseline::Corner::k0p7Hz);
+    corner_chosen_ = true;
+  }
+}
+
+ScreenConfig Identifier::screen_config(const IdentifierConfig& config) noexcept {
+  ScreenConfig screen = config.screen;
+  screen.sample_rate_hz = config.sample_rate_hz;
+  return screen;
+}
+
+UpdateResult Identifier::update(const Sample& sample) noexcept {
+  UpdateResult result;
+  if (any_ && sample.tick <= newest_tick_) {
+    ++counts_.repeated;
+    return result;
+  }
+  any_ = true;
+  newest_tick_ = sample.tick;
+  ++counts_.samples;
+  Screened screened;
+  if (screen_.push(sample, screened)) take(screened, result);
+  store_.step();
+  result.block_closed = reports_.pop(result.block);
+  return result;
+}
+
+void Identifier::take(const Screened& screened, UpdateResult& result) noexcept {
+  const std::int64_t tick = screened.sample.tick;
+  if (started_ && tick != last_tick_ + 1) take_gap(tick);
+  if (!started_) open_block_ = block_of(tick);
+  started_ = true;
+  last_tick_ = tick;
+  if (screened.verdict == Verdict::kGood) {
+    if (!in_stretch_) start_stretch(tick);
+    process(screened.sample, result);
+  } else {
+    in_stretch_ = false;
+    count_fault(screened.verdict, block_of(tick));
+  }
+  // A block's last row needs the samples of its reach on the far side.
+  close_blocks_before(block_of(std::max<std::int64_t>(tick - row_reach_, 0)));
+}
+
+void Identifier::count_fault(Verdict verdict, std::int64_t block) noexcept {
+  switch (verdict) {
+    case Verdict::kGood:
+      return;
+    case Verdict::kStuck:
+      ++counts_.stuck;
+      return ledger_.mark(block, Fault::kStuck);
+    case Verdict::kSaturated:
+      ++counts_.saturated;
+      return ledger_.mark(block, Fault::kSaturated);
+    case Verdict::kNotFinite:
+      ++counts_.not_finite;
+      return ledger_.mark(block, Fault::kNotFinite);
+  }
+}
+
+void Identifier::take_gap(std::int64_t tick) noexcept {
+  ++counts_.gaps;
+  counts_.lost += static_cast<std::uint64_t>(tick - last_tick_ - 1);
+  ledger_.mark(block_of(last_tick_ + 1), Fault::kGap);
+  ledger_.mark(block_of(tick - 1), Fault::kGap);
+  in_stretch_ = false;
+  // Nothing reaches across a gap: what lies before it gets no more rows, what was skipped has none.
+  close_blocks_before(std::min(block_of(last_tick_ + 1) + 1, block_of(tick)));
+  open_block_ = std::max(open_block_, block_of(tick));
+}
+
+void Identifier::start_stretch(std::int64_t tick) noexcept {
+  in_stretch_ = true;
+  stretch_tick_ = tick;
+  count_ = 0;
+  first_law_ = -1;
+  lift_.reset();
+  velocity_.reset();
+  deflection_.reset();
+  noise_.reset();
+  average_.reset();
+}
+
+void Identifier::process(const Sample& sample, UpdateResult& result) noexcept {
+  const auto& a = sample.accel_mps2;
+  const double relative_mps2 = 2.0 * a[0] - a[1] - a[2];
+  const std::int64_t n = count_++;
+  rows_.set_accelerations(n, a[0], relative_mps2);
+  noise_.update(a[0]);
+  const double input_mps2 = 0.5 * (a[1] + a[2]);
+  const double change_mps2 = input_mps2 - last_input_mps2_;
+  input_activity_ += (change_mps2 * change_mps2 - input_activity_) * step_s_ / kActivityTimeS;
+  last_input_mps2_ = input_mps2;
+  choose_corner();
+  double accel_mps2 = 0.0;
+  if (!lift_.update(relative_mps2, accel_mps2)) return;
+  accel_mps2_[history(n - VelocityLift::kHalf)] = accel_mps2;
+  double velocity_mps = 0.0;
+  if (velocity_.update(accel_mps2, velocity_mps)) {
+    take_velocity(n - velocity_delay(), velocity_mps, result);
+  }
+}
+
+void Identifier::choose_corner() noexcept {
+  if (corner_chosen_ || noise_.count() < kCornerDecision) return;
+  const bool noisy = noise_.std() > kNoiseForHighCornerMps2;
+  velocity_.set_corner(noisy ? Baseline::Corner::k1p0Hz : Baseline::Corner::k0p7Hz);
+  corner_chosen_ = true;
+}
+
+void Identifier::take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept {
+  activity_ += (velocity_mps * velocity_mps - activity_) * step_s_ / kActivityTimeS;
+  const bool still =
+      activity_ < kStillMps * kStillMps || input_activity_ < kQuietInputMps2 * kQuietInputMps2;
+  count_velocity(velocity_mps, still);
+  velocity_mps_[history(n)] = velocity_mps;
+  double deflection_m = 0.0;
+  if (deflection_.update(velocity_mps, deflection_m)) {
+    const std::int64_t then = n - deflection_.delay();
+    result.has_motion = true;
+    result.motion = {.tick = stretch_tick_ + then,
+                     .deflection_m = deflection_m,
+                     .velocity_mps = velocity_mps_[history(then)]};
+  }
+  const auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
+  if (!average_.complete()) return;
+  if (first_law_ < 0) first_law_ = n - 1;
+  rows_.set_law(n - 1, columns, still);
+  build_rows(n - 1);
+}
+
+void Identifier::count_velocity(double velocity_mps, bool still) noexcept {
+  if (still) return;
+  const double speed = std::abs(velocity_mps);
+  ++velocity_counts_.moving;
+  if (speed < kStickMps) ++velocity_counts_.sticking;
+  velocity_counts_.sum_squares += speed * speed;
+  auto& side = velocity_mps > 0.0 ? velocity_counts_.positive : velocity_counts_.negative;
+  ++side[nearest_node(config_.curve_nodes_mps, speed)];
+}
+
+void Identifier::build_rows(std::int64_t newest) noexcept {
+  for (std::size_t s = 0; s < kScales; ++s) {
+    const int half = rows_.bank().half(s);
+    const std::int64_t centre = newest - half;
+    if (centre - half < first_law_) continue;
+    // Centres lie on a fixed raster of ticks, of its own phase per scale.
+    const int stride = rows_.bank().stride(s);
+    if ((stretch_tick_ + centre) % stride == stride / 2) build_row(s, centre);
+  }
+}
+
+void Identifier::build_row(std::size_t scale, std::int64_t centre) noexcept {
+  const std::int64_t block = block_of(stretch_tick_ + centre);
+  if (rows_.still_share(scale, centre) > kStillShareLimit) {
+    ledger_.add_still_row(block);
+    ++counts_.rows_still;
+    return;
+  }
+  ledger_.add_row(block);
+  ++counts_.rows;
+  store_.absorb(block, scale, rows_.row(scale, centre));
+}
+
+void Identifier::close_blocks_before(std::int64_t block) noexcept {
+  for (; open_block_ < block; ++open_block_) {
+    const BlockStatus status =
+        ledger_.close(open_block_, rows_per_block_ - static_cast<std::uint32_t>(kScales));
+    reports_.push({.first_tick = open_block_ * block_ticks_, .status = status});
+    ++counts_.blocks;
+    if (status == BlockStatus::kStill) ++counts_.blocks_still;
+    if (status >= BlockStatus::kExcludedGap) ++counts_.blocks_excluded;
+    store_.close(open_block_);
+  }
+}
+
+void Identifier::finish() noexcept {
+  UpdateResult result;
+  Screened screened;
+  while (screen_.drain(screened)) take(screened, result);
+  if (started_) close_blocks_before(block_of(last_tick_) + 1);
+  store_.finish();
+}
+
+}  // namespace dampline

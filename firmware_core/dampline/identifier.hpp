@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/damping/law_columns.hpp"
+#include "dampline/estimate/block_ledger.hpp"
+#include "dampline/estimate/block_store.hpp"
+#include "dampline/estimate/statistics.hpp"
+#include "dampline/motion/anti_alias.hpp"
+#include "dampline/motion/drift_free_integral.hpp"
+#include "dampline/motion/fir.hpp"
+#include "dampline/motion/noise_meter.hpp"
+#include "dampline/result.hpp"
+#include "dampline/sample/sample.hpp"
+#include "dampline/sample/screen.hpp"
+#include "dampline/snapshot.hpp"
+#include "dampline/wavelet/law_average.hpp"
+#include "dampline/wavelet/row_builder.hpp"
+
+namespace dampline {
+
+/// Right ends of the curve's segments in m/s; the last segment goes on without end. Fixed in
+/// advance, so that statistics of different runs have the same basis and merge.
+inline constexpr std::array<double, kCurveSegments> kDefaultCurveNodesMps{
+    3.0e-3, 5.5e-3, 8.0e-3, 11.0e-3, 14.5e-3, 19.0e-3, 26.0e-3, 40.0e-3};
+
+struct IdentifierConfig {
+  double sample_rate_hz{300.0};    ///< 150...400
+  double moving_mass_kg{37200.0};  ///< truck frame and its share of the body; scales every force
+  /// 0.7 or 1.0: what is slower is not velocity but drift. 0: chosen once, from the sensors' noise.
+  double velocity_corner_hz{0.0};
+  std::array<double, kCurveSegments> curve_nodes_mps{kDefaultCurveNodesMps};
+  AntiAliasConfig anti_alias{};  ///< of the sensors
+  ScreenConfig screen{};         ///< its rate is taken from sample_rate_hz
+  Memory memory{Memory::kInfinite};
+  double memory_s{0.0};  ///< length of the window, or time constant
+};
+
+struct UpdateResult {
+  bool has_motion{false};
+  Motion motion{};  ///< of an earlier sample
+  bool block_closed{false};
+  BlockReport block{};
+};
+
+/// The corridor: a sample in, what is known out. Everything about one stream lives in here; its
+/// size is fixed, update() costs a bounded number of operations, allocates nothing and reads no
+/// clock.
+///
+/// M z_b'' + k y + F(v) = 0 with y = 2 z_b - (z_1 + z_2), v = y'.
+class Identifier {
+ public:
+  static constexpr double kBlockS = 2.0;
+
+  /// kInvalidConfig when a setting is out of its range.
+  [[nodiscard]] static Result<IdentifierConfig> check(const IdentifierConfig& config) noexcept;
+
+  /// Precondition: check(config).ok().
+  explicit Identifier(const IdentifierConfig& config) noexcept;
+
+  UpdateResult update(const Sample& sample) noexcept;
+
+  /// The end of a record: takes the samples that are still held back and closes the open blocks.
+  void finish() noexcept;
+  /// Reports that finish() left behind; false when there is none.
+  [[nodiscard]] bool next_report(BlockReport& out) noexcept { return reports_.pop(out); }
+
+  [[nodiscard]] Snapshot snapshot() noexcept;
+
+  /// The sufficient statistics so far. `out` is some 270 KiB: place it yourself.
+  void export_statistics(Statistics& out) noexcept;
+  /// Starts new statistics; filters and open blocks go on. Two exports around this call merge to
+  /// what one export without it would have been.
+  void clear_statistics() noexcept;
+
+  /// From a sample to its velocity, to its Motion, and to the last row that it is the centre of.
+  [[nodiscard]] double velocity_latency_s() const noexcept;
+  [[nodiscard]] double motion_latency_s() const noexcept;
+  [[nodiscard]] double row_latency_s() const noexcept;
+
+  [[nodiscard]] const IdentifierConfig& config() const noexcept { return config_; }
+
+ private:
+  static constexpr std::size_t kHistory = 1024;
+
+  void take(const Screened& screened, UpdateResult& result) noexcept;
+  void count_fault(Verdict verdict, std::int64_t block) noexcept;
+  void take_gap(std::int64_t tick) noexcept;
+  void start_stretch(std::int64_t tick) noexcept;
+  void process(const Sample& sample, UpdateResult& result) noexcept;
+  void choose_corner() noexcept;
+  void take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept;
+  void count_velocity(double velocity_mps, bool still) noexcept;
+  void build_rows(std::int64_t newest) noexcept;
+  void build_row(std::size_t scale, std::int64_t centre) noexcept;
+  void close_blocks_before(std::int64_t block) noexcept;
+  [[nodiscard]] StatisticsHeader header() const noexcept;
+  [[nodiscard]] std::int64_t block_of(std::int64_t tick) const noexcept {
+    return tick / block_ticks_;
+  }
+  [[nodiscard]] static std::size_t history(std::int64_t n) noexcept {
+    return static_cast<std::size_t>(n) % kHistory;
+  }
+  [[nodiscard]] static ScreenConfig screen_config(const IdentifierConfig& config) noexcept;
+  [[nodiscard]] std::int64_t velocity_delay() const noexcept {
+    return VelocityLift::kHalf + velocity_.delay();
+  }
+  [[nodiscard]] std::uint64_t basis_hash() const noexcept;
+
+  IdentifierConfig config_;
+  double step_s_;
+  std::int64_t block_ticks_;
+  std::int64_t row_reach_{0};  // samples from the centre of the longest row to the newest it needs
+  std::uint32_t rows_per_block_{0};
+
+  SampleScreen screen_;
+  Fir<VelocityLift::kHalf> lift_;
+  DriftFreeIntegral velocity_;
+  DriftFreeIntegral deflection_;
+  NoiseMeter noise_;
+  bool corner_chosen_{false};
+  LawColumns law_;
+  LawAverage average_;
+  RowBuilder rows_;
+  BlockLedger ledger_;
+  BlockStore store_;
+
+  bool any_{false};      // a sample was given
+  bool started_{false};  // a sample came through the screen
+  bool in_stretch_{false};
+  std::int64_t newest_tick_{0};   // given to update()
+  std::int64_t last_tick_{0};     // through the screen
+  std::int64_t stretch_tick_{0};  // tick of the stretch's sample 0
+  std::int64_t count_{0};         // samples of the stretch
+  std::int64_t first_law_{0};     // first sample of the stretch with the law's columns
+  std::int64_t open_block_{0};    // oldest block that may still get rows
+  double activity_{0.0};          // smoothed v^2, (m/s)^2
+  double input_activity_{0.0};    // smoothed squared change of the wheelsets' mean, (m/s^2)^2
+  double last_input_mps2_{0.0};
+
+  BlockReports reports_;
+
+  VelocityCounts velocity_counts_;
+  Counts counts_;
+  std::array<double, kHistory> velocity_mps_{};  // rings, by sample of the stretch
+  std::array<double, kHistory> accel_mps2_{};    // y'' with its fast part lifted
+};
+
+}  // namespace dampline

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// What is known so far: the Identifier's results and statistics. The path of a sample is in
+// identifier.cpp.
+#include <bit>
+
+#include "dampline/damping/summary.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr std::uint64_t kBasisVersion = 1;
+
+double corner_hz(Baseline::Corner corner) noexcept {
+  return corner == Baseline::Corner::k0p7Hz ? 0.7 : 1.0;
+}
+
+/// FNV-1a over the bits of a number.
+std::uint64_t hashed(std::uint64_t hash, double value) noexcept {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  for (int shift = 0; shift < 64; shift += 8) {
+    hash = (hash ^ ((bits >> shift) & 0xffU)) * 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+}  // namespace
+
+StatisticsHeader Identifier::header() const noexcept {
+  return {.basis_hash = basis_hash(),
+          .sample_rate_hz = config_.sample_rate_hz,
+          .velocity_corner_hz = corner_hz(velocity_.corner()),
+          .curve_nodes_mps = config_.curve_nodes_mps,
+          .entry_count = 0,
+          .blocks_per_entry = store_.blocks_per_entry(),
+          .velocity = velocity_counts_,
+          .noise_mps2 = noise_.std(),
+          .newest_tick = newest_tick_,
+          .counts = counts_};
+}
+
+Snapshot Identifier::snapshot() noexcept {
+  store_.finish();
+  ScaleFactors total;
+  store_.total_to(total);
+  std::array<const ScaleFactors*, kEntries> entries{};
+  const std::size_t count = store_.entries_to(entries);
+  return summarise(header(), total, EntryList{entries}.first(count),
+                   {.moving_mass_kg = config_.moving_mass_kg});
+}
+
+void Identifier::export_statistics(Statistics& out) noexcept {
+  store_.finish();
+  out.header = header();
+  store_.total_to(out.total);
+  std::array<const ScaleFactors*, kEntries> entries{};
+  const std::size_t count = store_.entries_to(entries);
+  for (std::size_t i = 0; i < count; ++i) out.entries[i] = *entries[i];
+  for (std::size_t i = count; i < kEntries; ++i) out.entries[i].clear();
+  out.header.entry_count = static_cast<std::uint32_t>(count);
+}
+
+void Identifier::clear_statistics() noexcept {
+  store_.clear();
+  velocity_counts_ = {};
+  counts_ = {};
+}
+
+double Identifier::velocity_latency_s() const noexcept {
+  return static_cast<double>(velocity_delay() + static_cast<std::int64_t>(screen_.delay())) *
+         step_s_;
+}
+
+double Identifier::motion_latency_s() const noexcept {
+  return velocity_latency_s() + deflection_.delay() * step_s_;
+}
+
+double Identifier::row_latency_s() const noexcept {
+  return static_cast<double>(row_reach_ + static_cast<std::int64_t>(screen_.delay())) * step_s_;
+}
+
+std::uint64_t Identifier::basis_hash() const noexcept {
+  std::uint64_t hash = hashed(0xcbf29ce484222325ULL, static_cast<double>(kBasisVersion));
+  hash = hashed(hash, config_.sample_rate_hz);
+  hash = hashed(hash, corner_hz(velocity_.corner()));
+  for (const double w : kLawWidthMps) hash = hashed(hash, w);
+  for (const double node : config_.curve_nodes_mps) hash = hashed(hash, node);
+  hash = hashed(hash, config_.anti_alias.corner_hz);
+  hash = hashed(hash, config_.anti_alias.order);
+  for (std::size_t s = 0; s < kScales; ++s) hash = hashed(hash, rows_.bank().half(s));
+  return hash;
+}
+
+}  // namespace dampline

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/motion/baseline.hpp"
+
+namespace dampline {
+namespace {
+
+// Taps 0...8 of the symmetric filter: the inverse Fourier transform of 1 / (1 + (f / corner)^8),
+// divided by the responses of the boxes and of the spline, under a square-root Hann window of
+// half-length 9, scaled to unit sum. For a corner of 0.7 and 1.0 Hz at 300 Hz and decimation 51.
+constexpr std::array<double, 9> kTaps0p7{.25912080,  .22404684,  .14146559,  .05543398, -.00141765,
+                                         -.02195264, -.01840740, -.00778476, -.00094435};
+constexpr std::array<double, 9> kTaps1p0{.40455557,  .29392382, .09278086, -.03250113, -.04936155,
+                                         -.01865993, .00364571, .00617654, .00171789};
+
+constexpr std::array<double, 9> unit_sum(std::array<double, 9> taps) noexcept {
+  double sum = taps[0];
+  for (std::size_t i = 1; i < taps.size(); ++i) sum += 2.0 * taps[i];
+  for (double& tap : taps) tap /= sum;
+  return taps;
+}
+constexpr std::array<std::array<double, 9>, 2> kTaps{unit_sum(kTaps0p7), unit_sum(kTaps1p0)};
+
+constexpr std::array<double, 4> cubic_b_spline(double u) noexcept {
+  const double r = 1.0 - u;
+  return {r * r * r / 6.0, (4.0 - 6.0 * u * u + 3.0 * u * u * u) / 6.0,
+          (4.0 - 6.0 * r * r + 3.0 * r * r * r) / 6.0, u * u * u / 6.0};
+}
+
+}  // namespace
+
+Baseline::Baseline(int decimation) noexcept
+    : decimation_{decimation}, box_half_{3 * (decimation - 1) / 2} {
+  // Box convolved with box convolved with box, by counting: how many triples add up to i.
+  const double scale = 1.0 / (static_cast<double>(decimation) * decimation * decimation);
+  for (int a = 0; a < decimation; ++a) {
+    for (int b = 0; b < decimation; ++b) {
+      for (int c = 0; c < decimation; ++c) box_[static_cast<std::size_t>(a + b + c)] += scale;
+    }
+  }
+  for (int i = 0; i < decimation; ++i) {
+    spline_[static_cast<std::size_t>(i)] = cubic_b_spline(static_cast<double>(i) / decimation);
+  }
+}
+
+void Baseline::low_rate_step(std::int64_t instant) noexcept {
+  const std::int64_t start = instant * decimation_ - box_half_;
+  double sum = 0.0;
+  for (int i = 0; i <= 2 * box_half_; ++i) sum += box_[static_cast<std::size_t>(i)] * at(start + i);
+  low_[static_cast<std::size_t>(instant) & 31U] = sum;
+  const std::int64_t centre = instant - kTapsHalf;
+  if (centre < kFirstBox + kTapsHalf) return;
+  const auto& taps = kTaps[static_cast<std::size_t>(corner_)];
+  const auto low = [this](std::int64_t i) { return low_[static_cast<std::size_t>(i) & 31U]; };
+  double c = taps[0] * low(centre);
+  for (int j = 1; j <= kTapsHalf; ++j) {
+    c += taps[static_cast<std::size_t>(j)] * (low(centre - j) + low(centre + j));
+  }
+  coefficients_[static_cast<std::size_t>(centre) & 7U] = c;
+}
+
+bool Baseline::update(double x, double& out) noexcept {
+  const std::int64_t n = count_++;
+  ring_[static_cast<std::size_t>(n) & (kRing - 1)] = x;
+  const std::int64_t boxed = n - box_half_;
+  if (boxed >= std::int64_t{kFirstBox} * decimation_ && boxed % decimation_ == 0)
+    low_rate_step(boxed / decimation_);
+  const std::int64_t e = n - delay();
+  if (e < first()) return false;
+  const std::int64_t knot = e / decimation_;
+  const auto& b = spline_[static_cast<std::size_t>(e % decimation_)];
+  double slow = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    slow += b[i] * coefficients_[(static_cast<std::size_t>(knot) + i - 1) & 7U];
+  }
+  out = at(e) - slow;
+  return true;
+}
+
+void Baseline::rebase(double amount) noexcept {
+  for (double& x : ring_) x -= amount;
+  for (double& x : low_) x -= amount;
+  for (double& x : coefficients_) x -= amount;
+}
+
+}  // namespace dampline

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/rig/rig_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dampline/rig/rig_motion.hpp"
+#include "dampline/rig/rig_test_function.hpp"
+
+namespace dampline {
+namespace {
+
+/// Median of |x| over sigma for a Gaussian, times the gain sqrt(70) of fourth differences.
+constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);
+constexpr std::int64_t kBlocksWanted = 80;
+/// Corners as fractions of the rate, within the test function's limits of 7 and 512 samples.
+constexpr double kFastest = 12.0;
+constexpr double kSlowest = 1000.0;
+
+double fourth(double a, double b, double c, double d, double e) noexcept {
+  return std::abs(a - 4.0 * b + 6.0 * c - 4.0 * d + e);
+}
+
+bool finite(const RigSample& sample, bool velocity_measured) noexcept {
+  return std::isfinite(sample.deflection_m) && std::isfinite(sample.force_n) &&
+         (!velocity_measured || std::isfinite(sample.velocity_mps));
+}
+
+}  // namespace
+
+const RigSample& RigSurvey::ago(std::size_t samples) const noexcept {
+  return ring_[(next_ + kRing - 1 - samples) % kRing];
+}
+
+void RigSurvey::update(const RigSample& sample) noexcept {
+  if (!finite(sample, velocity_measured_)) {
+    run_ = 0;
+    return;
+  }
+  if (run_ > 0 && sample.tick != ago(0).tick + 1) run_ = 0;
+  ring_[next_] = sample;
+  next_ = (next_ + 1) % kRing;
+  run_ = std::min(run_ + 1, kRing);
+  ++samples_;
+  const double delta = sample.deflection_m - mean_m_;
+  mean_m_ += delta / static_cast<double>(samples_);
+  squares_m2_ += delta * (sample.deflection_m - mean_m_);
+  if (run_ == kRing) take_differences();
+}
+
+void RigSurvey::take_differences() noexcept {
+  const double step = std::abs(ago(0).deflection_m - ago(1).deflection_m);
+  if (step > 0.0 && (resolution_m_ == 0.0 || step < resolution_m_)) resolution_m_ = step;
+  deflection_fourth_m_.add(fourth(ago(0).deflection_m, ago(1).deflection_m, ago(2).deflection_m,
+                                  ago(3).deflection_m, ago(4).deflection_m));
+  const double span_s = static_cast<double>(kRing - 1) / rate_hz_;
+  double velocity = (ago(0).deflection_m - ago(kRing - 1).deflection_m) / span_s;
+  if (velocity_measured_) {
+    velocity = ago(0).velocity_mps;
+    velocity_fourth_mps_.add(fourth(ago(0).velocity_mps, ago(1).velocity_mps, ago(2).velocity_mps,
+                                    ago(3).velocity_mps, ago(4).velocity_mps));
+  }
+  speed_mps_.add(std::abs(velocity));
+  velocity_squares_ += velocity * velocity;
+  ++velocities_;
+}
+
+double RigSurvey::deflection_noise_m() const noexcept {
+  const double rounding = resolution_m_ / std::sqrt(12.0);
+  return std::max(rounding, kFourthToSigma * deflection_fourth_m_.quantile(0.5));
+}
+
+double RigSurvey::velocity_rms_mps() const noexcept {
+  return velocities_ == 0 ? 0.0 : std::sqrt(velocity_squares_ / static_cast<double>(velocities_));
+}
+
+double RigSurvey::motion_frequency_hz() const noexcept {
+  if (!(squares_m2_ > 0.0)) return 0.0;
+  const double deflection_rms = std::sqrt(squares_m2_ / static_cast<double>(samples_));
+  return velocity_rms_mps() / deflection_rms / (2.0 * std::numbers::pi);
+}
+
+double RigSurvey::derivative_error_mps(int half_width) const noexcept {
+  return DerivativeWindow{half_width, 1.0 / rate_hz_}.noise_gain() * deflection_noise_m();
+}
+
+int RigSurvey::choose_half_width(const RigConfig& config) const noexcept {
+  constexpr double kErrorShare = 0.01;
+  const int widest = std::clamp(half_support_samples(config) / 4, 1, kMaxVelocityHalfWidth);
+  int half_width = 1;
+  while (half_width < widest && derivative_error_mps(half_width) > kErrorShare * velocity_rms_mps())
+    ++half_width;
+  return half_width;
+}
+
+double RigSurvey::velocity_error_mps(const RigConfig& config) const noexcept {
+  if (velocity_measured_) return kFourthToSigma * velocity_fourth_mps_.quantile(0.5);
+  return derivative_error_mps(config.velocity_half_width);
+}
+
+double RigSurvey::quiet_corner_hz(double highest_hz, double lowest_hz) const noexcept {
+  constexpr double kNoiseShare = 1e-3;
+  // v_rms^2 <= x_rms a_rms, so this acceleration is a lower bound.
+  const double accel = 2.0 * std::numbers::pi * motion_frequency_hz() * velocity_rms_mps();
+  double corner_hz = highest_hz;
+  while (corner_hz > lowest_hz) {
+    const TestFunction psi{half_support_samples(corner_hz, rate_hz_), 1.0 / rate_hz_};
+    const double noise = psi.second_noise_gain() * deflection_noise_m();
+    if (noise * noise < kNoiseShare * accel * accel) break;
+    corner_hz /= std::numbers::sqrt2;
+  }
+  return std::max(corner_hz, lowest_hz);
+}
+
+double RigSurvey::choose_corner_hz(const RigTerms& terms) const noexcept {
+  const double motion_hz = 4.0 * motion_frequency_hz();
+  const double highest_hz = std::min(std::max(rate_hz_ / 50.0, motion_hz), rate_hz_ / kFastest);
+  if (!terms.inertia) return highest_hz;
+  const double lowest_hz = std::min(std::max(rate_hz_ / kSlowest, motion_hz), highest_hz);
+  return quiet_corner_hz(highest_hz, lowest_hz);
+}
+
+Result<RigConfig> RigSurvey::suggest(const RigTerms& terms, double corner_hz) const noexcept {
+  const double top = speed_mps_.quantile(0.99);
+  if (!(top > 0.0) || !(squares_m2_ > 0.0)) return Errc::kNotReady;
+  RigConfig out;
+  out.sample_rate_hz = rate_hz_;
+  out.velocity_measured = velocity_measured_;
+  out.corner_hz = corner_hz > 0.0 ? corner_hz : choose_corner_hz(terms);
+  out.prediction_corner_hz =
+      std::max(out.corner_hz, quiet_corner_hz(rate_hz_ / kFastest, rate_hz_ / kSlowest));
+  out.velocity_half_width = choose_half_width(out);
+  const double error = velocity_error_mps(out);
+  out.sign_width_mps = std::max(1.2533 * error, 1e-4 * velocity_rms_mps());
+  out.still_mps = std::max(3.0 * error, 0.01 * velocity_rms_mps());
+  for (std::size_t i = 0; i < kCurveSegments; ++i)
+    out.curve_nodes_mps[i] = top * static_cast<double>(i + 1) / static_cast<double>(kCurveSegments);
+  const auto length = static_cast<std::int64_t>(samples_);
+  const std::int64_t half = half_support_samples(out);
+  const std::int64_t shortest = 2 * (2 * half + 1);
+  out.block_samples = std::max(length / kBlocksWanted, shortest);
+  return check(out);
+}
+
+}  // namespace dampline

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dampline/rig/log_histogram.hpp"
+#include "dampline/rig/rig_config.hpp"
+#include "dampline/rig/rig_sample.hpp"
+
+namespace dampline {
+
+/// A first look at a record: how fast, how noisy, how long. Decides the settings of the
+/// RigIdentifier that a person need not.
+class RigSurvey {
+ public:
+  explicit RigSurvey(double sample_rate_hz, bool velocity_measured) noexcept
+      : rate_hz_{sample_rate_hz}, velocity_measured_{velocity_measured} {}
+
+  void update(const RigSample& sample) noexcept;
+
+  /// Settings with
+  ///  - corner: a fiftieth of the rate, or four times the motion's own frequency where that is more
+  ///    (a twelfth of the rate at most), then lower by half octaves until noise makes less than a
+  ///    thousandth of the variance of <x, psi''>, the column of a driven mass;
+  ///  - prediction corner: by the same rule from a twelfth of the rate, not below the corner;
+  ///  - derivative of the deflection: as short as noise of 1 % of the rms velocity permits, because
+  ///    a longer one shifts the reversals, a quarter of the test function at most;
+  ///  - sign width: 1.2533 standard deviations of the velocity error (E[sign v | measured v]);
+  ///  - standstill: three of those, or 1 % of the rms velocity;
+  ///  - nodes: eight equal segments up to the 99 % quantile of |v|;
+  ///  - blocks: about 80 in the record, at least two test functions long.
+  /// kNotReady where there is no motion; kInvalidConfig where the corner that was asked for does
+  /// not fit the rate. `corner_hz` 0: chosen as above.
+  [[nodiscard]] Result<RigConfig> suggest(const RigTerms& terms,
+                                          double corner_hz = 0.0) const noexcept;
+
+  /// White noise of the deflection, rms, from fourth differences; at least that of its resolution.
+  [[nodiscard]] double deflection_noise_m() const noexcept;
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+  /// sqrt of mean v^2 / variance of x, in Hz: the frequency of a harmonic motion.
+  [[nodiscard]] double motion_frequency_hz() const noexcept;
+
+ private:
+  static constexpr std::size_t kRing = 17;
+
+  void take_differences() noexcept;
+  [[nodiscard]] const RigSample& ago(std::size_t samples) const noexcept;
+  [[nodiscard]] double choose_corner_hz(const RigTerms& terms) const noexcept;
+  [[nodiscard]] double quiet_corner_hz(double highest_hz, double lowest_hz) const noexcept;
+  [[nodiscard]] double velocity_rms_mps() const noexcept;
+  [[nodiscard]] double derivative_error_mps(int half_width) const noexcept;
+  [[nodiscard]] int choose_half_width(const RigConfig& config) const noexcept;
+  [[nodiscard]] double velocity_error_mps(const RigConfig& config) const noexcept;
+
+  double rate_hz_;
+  bool velocity_measured_;
+  std::array<RigSample, kRing> ring_{};
+  std::size_t next_{0};
+  std::size_t run_{0};  ///< consecutive samples in the ring
+  std::uint64_t samples_{0};
+  std::uint64_t velocities_{0};
+  double mean_m_{0.0};
+  double squares_m2_{0.0};
+  double velocity_squares_{0.0};
+  double resolution_m_{0.0};  ///< smallest step other than 0
+  LogHistogram speed_mps_;
+  LogHistogram deflection_fourth_m_;
+  LogHistogram velocity_fourth_mps_;
+};
+
+}  // namespace dampline

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/sample/assembler.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline {
+
+Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) noexcept {
+  if (!(config.sample_rate_hz > 0.0 && config.sample_rate_hz <= 1e6)) return Errc::kInvalidConfig;
+  for (const ChannelConfig& channel : config.channels) {
+    if (!is_valid(channel)) return Errc::kInvalidConfig;
+  }
+  return config;
+}
+
+SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
+    : lanes_{ChannelLane{config.channels[0], config.sample_rate_hz},
+             ChannelLane{config.channels[1], config.sample_rate_hz},
+             ChannelLane{config.channels[2], config.sample_rate_hz}},
+      meter_{config.sample_rate_hz} {}
+
+void SampleAssembler::push(const CanFrame& frame) noexcept {
+  ++counts_.frames;
+  if (frame.error) {
+    ++counts_.error;
+    return;
+  }
+  bool wanted = false;
+  for (ChannelLane& lane : lanes_) {
+    if (!lane.wants(frame)) continue;
+    wanted = true;
+    if (paused(lane, frame.time_ns)) restart(frame.time_ns);
+    lane.push(frame);
+  }
+  if (!wanted) {
+    ++counts_.foreign;
+    return;
+  }
+  if (!aligned_ && ready_to_align(kAlignFrames)) align();
+  if (aligned_) settle(kWaitTicks);
+}
+
+void SampleAssembler::flush() noexcept {
+  for (ChannelLane& lane : lanes_) lane.flush();
+  if (!aligned_ && ready_to_align(1)) align();
+  if (aligned_) settle(0);
+}
+
+bool SampleAssembler::paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept {
+  if (!lane.started()) return false;
+  return lane.line().tick_at(time_ns) - static_cast<double>(lane.newest()) >
+         static_cast<double>(kPauseTicks);
+}
+
+// Ticks go on by time, as well as the nominal line of the frame channel knows.
+void SampleAssembler::restart(std::int64_t time_ns) noexcept {
+  const ChannelLane& first = lanes_[0];
+  if (aligned_) {
+    settle(0);
+    next_tick_ = std::max(next_tick_,
+                          static_cast<std::int64_t>(std::llround(first.line().tick_at(time_ns))));
+  }
+  for (ChannelLane& lane : lanes_) lane.restart(next_tick_);
+  aligned_ = false;
+  meter_.begin_segment();
+  ++counts_.restarts;
+}
+
+bool SampleAssembler::ready_to_align(std::uint64_t frames) const noexcept {
+  return std::all_of(lanes_.begin(), lanes_.end(),
+                     [frames](const ChannelLane& lane) { return lane.since_start() >= frames; });
+}
+
+// Lines, not single frames, are compared: one late frame must not shift a channel for good.
+void SampleAssembler::align() noexcept {
+  const std::int64_t now_ns = lanes_[0].line().time_ns();
+  const double tick_now = lanes_[0].line().tick_at(now_ns);
+  std::int64_t oldest = next_tick_;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    lane_offset_[c] = std::llround(lanes_[c].line().tick_at(now_ns) - tick_now);
+    oldest = std::max(oldest, lanes_[c].oldest() - lane_offset_[c]);
+  }
+  next_tick_ = oldest;
+  aligned_ = true;
+}
+
+const Reading* SampleAssembler::find(std::size_t channel, std::int64_t tick) const noexcept {
+  return lanes_[channel].find(tick + lane_offset_[channel]);
+}
+
+int SampleAssembler::present(std::int64_t tick) const noexcept {
+  int channels = 0;
+  for (std::size_t c = 0; c < kChannels; ++c) channels += find(c, tick) != nullptr ? 1 : 0;
+  return channels;
+}
+
+std::int64_t SampleAssembler::newest() const noexcept {
+  std::int64_t tick = lanes_[0].newest() - lane_offset_[0];
+  for (std::size_t c = 1; c < kChannels; ++c)
+    tick = std::max(tick, lanes_[c].newest() - lane_offset_[c]);
+  return tick;
+}
+
+void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
+  const std::int64_t last = newest();
+  // Two stretches at most can hold readings: the one before a jump, and the one that ends now.
+  for (int stretch = 0; stretch < 2; ++stretch) {
+    const std::int64_t end = std::min(last, next_tick_ + kLaneSpan);
+    while (next_tick_ <= end) {
+      const int channels = present(next_tick_);
+      if (channels < static_cast<int>(kChannels) && last - next_tick_ < wait_ticks) return;
+      if (channels == static_cast<int>(kChannels)) {
+        emit();
+      } else if (channels > 0) {
+        ++counts_.incomplete;
+      }
+      ++next_tick_;
+    }
+    next_tick_ = std::max(next_tick_, last - kLaneSpan);
+  }
+}
+
+void SampleAssembler::emit() noexcept {
+  Sample sample;
+  sample.tick = next_tick_;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const Reading& reading = *find(c, next_tick_);
+    sample.accel_mps2[c] = reading.accel_mps2;
+    if (reading.saturated)
+      sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
+    if (c == 0) sample.time_ns = reading.time_ns;
+  }
+  if (ready_count_ == kReady) {
+    ++counts_.overflow;
+    return;
+  }
+  ready_[(ready_first_ + ready_count_) % kReady] = sample;
+  ++ready_count_;
+  ++counts_.samples;
+  meter_.update(sample.tick, sample.time_ns);
+}
+
+bool SampleAssembler::pop(Sample& sample) noexcept {
+  if (ready_count_ == 0) return false;
+  sample = ready_[ready_first_];
+  ready_first_ = (ready_first_ + 1) % kReady;
+  --ready_count_;
+  return true;
+}
+
+AssemblerCounts SampleAssembler::counts() const noexcept {
+  AssemblerCounts all = counts_;
+  for (std::size_t c = 0; c < kChannels; ++c) all.channels[c] = lanes_[c].counts();
+  return all;
+}
+
+}  // namespace dampline

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/result.hpp"
+#include "dampline/sample/can_frame.hpp"
+#include "dampline/sample/channel_lane.hpp"
+#include "dampline/sample/rate_meter.hpp"
+#include "dampline/sample/sample.hpp"
+
+namespace dampline {
+
+struct AssemblerConfig {
+  std::array<ChannelConfig, kChannels> channels{};  ///< indexed by Channel
+  double sample_rate_hz{300.0};                     ///< nominal, within 10 % (50 % with counters)
+};
+
+/// Monotone.
+struct AssemblerCounts {
+  std::uint64_t frames{0};      ///< given to push()
+  std::uint64_t foreign{0};     ///< other people's: no channel wants the identifier
+  std::uint64_t error{0};       ///< error frames
+  std::uint64_t samples{0};     ///< complete instants
+  std::uint64_t incomplete{0};  ///< instants dropped because a channel was missing
+  std::uint64_t restarts{0};    ///< long pauses after which the channels were aligned anew
+  std::uint64_t overflow{0};    ///< samples lost because pop() was not called
+  std::array<ChannelCounts, kChannels> channels{};
+};
+
+/// CAN frames in, samples out: three channels decoded, numbered and brought together by tick.
+///
+/// Channels are aligned once by time, to the nearest tick, over the first kAlignFrames of each, and
+/// then kept by their counters. An instant waits kWaitTicks for its channels, so frames may swap;
+/// an instant that lacks a channel is dropped and the tick jumps. After a pause of kPauseTicks the
+/// channels are aligned anew. The work of one push() is bounded by kLaneSpan steps.
+class SampleAssembler {
+ public:
+  static constexpr std::uint64_t kAlignFrames = 16;
+  static constexpr std::int64_t kWaitTicks = 16;
+  static constexpr std::int64_t kPauseTicks = 1024;
+
+  /// kInvalidConfig: a signal lies outside its frame, an identifier or the rate out of range.
+  [[nodiscard]] static Result<AssemblerConfig> check(const AssemblerConfig& config) noexcept;
+  /// Precondition: check(config).ok().
+  explicit SampleAssembler(const AssemblerConfig& config) noexcept;
+
+  /// Takes one frame, whoever sent it. Then pop() until it returns false.
+  void push(const CanFrame& frame) noexcept;
+  /// True when it wrote a sample. Ticks increase strictly.
+  [[nodiscard]] bool pop(Sample& sample) noexcept;
+  /// End of the stream: whatever is complete becomes ready.
+  void flush() noexcept;
+
+  [[nodiscard]] AssemblerCounts counts() const noexcept;
+  /// From the times of the frame channel's samples.
+  [[nodiscard]] MeasuredRate measured_rate() const noexcept { return meter_.measured(); }
+
+ private:
+  static constexpr std::int64_t kLaneSpan = ChannelLane::kKept;
+  static constexpr std::size_t kReady = 128;
+
+  void align() noexcept;
+  void settle(std::int64_t wait_ticks) noexcept;
+  void emit() noexcept;
+  void restart(std::int64_t time_ns) noexcept;
+  [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
+  [[nodiscard]] int present(std::int64_t tick) const noexcept;
+  [[nodiscard]] std::int64_t newest() const noexcept;
+  [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
+  [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
+
+  std::array<ChannelLane, kChannels> lanes_;
+  std::array<std::int64_t, kChannels> lane_offset_{};  // lane tick = tick + offset
+  bool aligned_{false};
+  std::int64_t next_tick_{0};
+  std::array<Sample, kReady> ready_{};
+  std::size_t ready_first_{0};
+  std::size_t ready_count_{0};
+  RateMeter meter_;
+  AssemblerCounts counts_;  // channels are filled in by counts()
+};
+
+}  // namespace dampline

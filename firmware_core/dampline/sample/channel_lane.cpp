@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/sample/channel_lane.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace dampline {
+namespace {
+constexpr std::size_t slot_of(std::int64_t tick) noexcept {
+  static_assert(ChannelLane::kKept == 64);
+  return static_cast<std::size_t>(static_cast<std::uint64_t>(tick) % 64U);
+}
+}  // namespace
+
+ChannelLane::ChannelLane(const ChannelConfig& config, double rate_hz) noexcept
+    : config_{config},
+      full_scale_{full_scale_of(config.accel)},
+      rate_hz_{rate_hz},
+      by_counter_{config.has_counter ? config.counter.length : 1U, rate_hz},
+      by_time_{rate_hz} {
+  forget();
+}
+
+void ChannelLane::forget() noexcept {
+  for (Reading& reading : kept_) reading.tick = std::numeric_limits<std::int64_t>::min();
+}
+
+void ChannelLane::restart(std::int64_t first_tick) noexcept {
+  by_counter_ = CounterSequence{config_.has_counter ? config_.counter.length : 1U, rate_hz_};
+  by_time_ = TimeSequence{rate_hz_};
+  forget();
+  first_tick_ = newest_ = first_tick;
+  since_start_ = 0;
+}
+
+bool ChannelLane::decode(const CanFrame& frame, Reading& reading, std::uint64_t& counter) noexcept {
+  if (config_.multiplexed) {
+    const Result<std::uint64_t> which = extract_bits(config_.multiplexor, frame);
+    if (which.ok() && which.value() != config_.multiplexor_value) return false;
+    if (!which.ok()) ++counts_.wrong_length;
+    if (!which.ok()) return false;
+  }
+  const Result<std::int64_t> raw = extract_raw(config_.accel, frame);
+  const Result<std::uint64_t> count = config_.has_counter ? extract_bits(config_.counter, frame)
+                                                          : Result<std::uint64_t>{std::uint64_t{0}};
+  if (!raw.ok() || !count.ok()) {
+    ++counts_.wrong_length;
+    return false;
+  }
+  reading.time_ns = frame.time_ns;
+  reading.accel_mps2 = to_physical(config_.accel, raw.value());
+  reading.saturated = full_scale_.reached(raw.value());
+  counter = count.value();
+  return true;
+}
+
+void ChannelLane::push(const CanFrame& frame) noexcept {
+  if (frame.remote) {
+    ++counts_.not_data;
+    return;
+  }
+  Reading reading;
+  std::uint64_t counter = 0;
+  if (!decode(frame, reading, counter)) return;
+  if (since_start_ == 0) {
+    by_counter_.start(first_tick_, counter, reading.time_ns);
+    by_time_.start(first_tick_, reading.time_ns);
+    reading.tick = first_tick_;
+    store_next(reading);
+  } else if (config_.has_counter) {
+    number_by_counter(reading, counter);
+  } else {
+    number_by_time(reading);
+  }
+}
+
+void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noexcept {
+  const Placement placed = by_counter_.place(counter, reading.time_ns);
+  reading.tick = placed.tick;
+  switch (placed.place) {
+    case Place::kRealigned:
+      ++counts_.realigned;
+      [[fallthrough]];
+    case Place::kNext:
+      store_next(reading);
+      break;
+    case Place::kBehind:
+      store_late(reading);
+      break;
+    case Place::kOutOfStep:
+      ++counts_.out_of_step;
+      break;
+  }
+}
+
+void ChannelLane::number_by_time(const Reading& reading) noexcept {
+  if (!by_time_.push(reading)) ++counts_.repeated;
+  take_released();
+}
+
+void ChannelLane::take_released() noexcept {
+  while (const auto reading = by_time_.pop()) store_next(*reading);
+}
+
+void ChannelLane::flush() noexcept {
+  by_time_.flush();
+  take_released();
+}
+
+void ChannelLane::store_next(const Reading& reading) noexcept {
+  const std::int64_t step = since_start_ == 0 ? 1 : reading.tick - newest_;
+  if (step > 1) {
+    ++counts_.gaps;
+    counts_.lost += static_cast<std::uint64_t>(step - 1);
+  }
+  kept_[slot_of(reading.tick)] = reading;
+  newest_ = reading.tick;
+  ++since_start_;
+  ++counts_.readings;
+  if (reading.saturated) ++counts_.saturated;
+}
+
+void ChannelLane::store_late(const Reading& reading) noexcept {
+  if (find(reading.tick) != nullptr) {
+    ++counts_.repeated;
+    return;
+  }
+  ++counts_.late;
+  if (reading.tick < first_tick_ || newest_ - reading.tick >= kKept) return;
+  kept_[slot_of(reading.tick)] = reading;
+  ++counts_.readings;
+  if (reading.saturated) ++counts_.saturated;
+}
+
+const Reading* ChannelLane::find(std::int64_t tick) const noexcept {
+  const Reading& reading = kept_[slot_of(tick)];
+  return reading.tick == tick ? &reading : nullptr;
+}
+
+std::int64_t ChannelLane::oldest() const noexcept {
+  return std::max(first_tick_, newest_ - kKept + 1);
+}
+
+}  // namespace dampline

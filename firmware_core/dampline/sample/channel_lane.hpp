@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/sample/channel.hpp"
+#include "dampline/sample/counter_sequence.hpp"
+#include "dampline/sample/reading.hpp"
+#include "dampline/sample/time_sequence.hpp"
+
+namespace dampline {
+
+/// What happened to the frames of one channel. Monotone.
+struct ChannelCounts {
+  std::uint64_t readings{0};      ///< decoded and numbered
+  std::uint64_t gaps{0};          ///< jumps of the channel's own sequence
+  std::uint64_t lost{0};          ///< ticks jumped over; those that came after all are in late
+  std::uint64_t late{0};          ///< out of order; used when the instant was still open
+  std::uint64_t repeated{0};      ///< the same counter (or instant) once more; ignored
+  std::uint64_t out_of_step{0};   ///< counter contradicts time; ignored
+  std::uint64_t realigned{0};     ///< node restarted its counter
+  std::uint64_t saturated{0};     ///< at full scale
+  std::uint64_t wrong_length{0};  ///< too short for the signals; ignored
+  std::uint64_t not_data{0};      ///< remote frames with this identifier; ignored
+};
+
+/// One acceleration channel: recognises its frames, decodes and numbers them, and keeps the newest
+/// kKept readings by tick. Ticks are the lane's own; the assembler aligns lanes.
+class ChannelLane {
+ public:
+  static constexpr std::int64_t kKept = 64;
+
+  /// Precondition: is_valid(config).
+  ChannelLane(const ChannelConfig& config, double rate_hz) noexcept;
+
+  [[nodiscard]] bool wants(const CanFrame& frame) const noexcept {
+    return frame.id == config_.id && frame.extended == config_.extended &&
+           (config_.interface_index < 0 ||
+            int{config_.interface_index} == int{frame.interface_index});
+  }
+  /// Precondition: wants(frame).
+  void push(const CanFrame& frame) noexcept;
+  void flush() noexcept;
+  /// Forgets readings and sequence, keeps the counts. The next frame gets first_tick.
+  void restart(std::int64_t first_tick) noexcept;
+
+  [[nodiscard]] const Reading* find(std::int64_t tick) const noexcept;
+  [[nodiscard]] bool started() const noexcept { return since_start_ > 0; }
+  [[nodiscard]] std::uint64_t since_start() const noexcept { return since_start_; }
+  [[nodiscard]] std::int64_t oldest() const noexcept;
+  [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
+  [[nodiscard]] const TickLine& line() const noexcept {
+    return config_.has_counter ? by_counter_.line() : by_time_.line();
+  }
+  [[nodiscard]] const ChannelCounts& counts() const noexcept { return counts_; }
+
+ private:
+  void forget() noexcept;
+  [[nodiscard]] bool decode(const CanFrame& frame, Reading& reading,
+                            std::uint64_t& counter) noexcept;
+  void number_by_counter(Reading reading, std::uint64_t counter) noexcept;
+  void number_by_time(const Reading& reading) noexcept;
+  void take_released() noexcept;
+  void store_next(const Reading& reading) noexcept;
+  void store_late(const Reading& reading) noexcept;
+
+  ChannelConfig config_;
+  FullScale full_scale_;
+  double rate_hz_;
+  CounterSequence by_counter_;
+  TimeSequence by_time_;
+  std::array<Reading, kKept> kept_{};
+  std::int64_t first_tick_{0};
+  std::int64_t newest_{0};
+  std::uint64_t since_start_{0};
+  ChannelCounts counts_;
+};
+
+}  // namespace dampline

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "dampline/result.hpp"
+#include "dampline/sample/can_frame.hpp"
+#include "dampline/sample/signal.hpp"
+
+namespace dampline {
+
+/// The bytes that a signal touches, from the one that holds its least significant bit on.
+struct SignalBytes {
+  int first{0};       ///< byte with the least significant bit
+  int count{0};       ///< bytes touched, 1...9
+  int step{1};        ///< +1 Intel, -1 Motorola: where the next more significant byte lies
+  unsigned shift{0};  ///< bit of the first byte at which the signal begins
+};
+
+/// Numbering of a DBC file: bit b lies in byte b / 8 at 2^(b % 8), in both byte orders. An Intel
+/// signal grows from its start bit to higher numbers; a Motorola signal falls from its start bit to
+/// the right end of the byte and goes on at the left end (bit 7) of the next ("sawtooth").
+[[nodiscard]] constexpr SignalBytes bytes_of(const SignalLayout& signal) noexcept {
+  if (signal.order == ByteOrder::kIntel) {
+    const int last_bit = signal.start_bit + signal.length - 1;
+    const int first = signal.start_bit / 8;
+    return {first, last_bit / 8 - first + 1, 1, static_cast<unsigned>(signal.start_bit % 8)};
+  }
+  const int first_reading_bit = signal.start_bit / 8 * 8 + (7 - signal.start_bit % 8);
+  const int last_reading_bit = first_reading_bit + signal.length - 1;
+  const int last_byte = last_reading_bit / 8;
+  return {last_byte, last_byte - signal.start_bit / 8 + 1, -1,
+          static_cast<unsigned>(7 - last_reading_bit % 8)};
+}
+
+/// Payload bytes that a frame must have for the signal to lie inside it.
+[[nodiscard]] constexpr int bytes_needed(const SignalLayout& signal) noexcept {
+  const SignalBytes bytes = bytes_of(signal);
+  return signal.order == ByteOrder::kIntel ? bytes.first + bytes.count : bytes.first + 1;
+}
+
+/// Length 1...64 bits, inside a frame of 64 bytes, and a scale that is a number and not zero.
+[[nodiscard]] constexpr bool is_valid(const SignalLayout& signal) noexcept {
+  if (signal.length < 1 || signal.length > 64 || signal.start_bit >= 512) return false;
+  if (!(signal.scale > 0.0 || signal.scale < 0.0)) return false;
+  return bytes_needed(signal) <= 64;
+}
+
+/// The signal's bits, right-aligned. kMalformed when the frame is too short for it.
+/// Precondition: is_valid(signal). At most nine steps.
+[[nodiscard]] constexpr Result<std::uint64_t> extract_bits(const SignalLayout& signal,
+                                                           const CanFrame& frame) noexcept {
+  if (bytes_needed(signal) > frame.length) return Errc::kMalformed;
+  const SignalBytes bytes = bytes_of(signal);
+  const auto byte = [&](int i) -> std::uint64_t {
+    const int index = bytes.first + i * bytes.step;
+    return frame.data[static_cast<std::size_t>(index)];
+  };
+  std::uint64_t bits = byte(0) >> bytes.shift;
+  for (int i = 1; i < bytes.count; ++i)
+    bits |= byte(i) << (8U * static_cast<unsigned>(i) - bytes.shift);
+  const std::uint64_t mask =
+      signal.length == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << signal.length) - 1;
+  return bits & mask;
+}
+
+/// The raw number, sign-extended where the signal is signed. An unsigned number of 64 bits wraps.
+[[nodiscard]] constexpr Result<std::int64_t> extract_raw(const SignalLayout& signal,
+                                                         const CanFrame& frame) noexcept {
+  const Result<std::uint64_t> bits = extract_bits(signal, frame);
+  if (!bits.ok()) return bits.error();
+  const unsigned unused = 64U - signal.length;
+  if (!signal.is_signed) return static_cast<std::int64_t>(bits.value());
+  return static_cast<std::int64_t>(bits.value() << unused) >> unused;
+}
+
+/// physical = raw * scale + offset, as a DBC file defines it.
+[[nodiscard]] constexpr double to_physical(const SignalLayout& signal, std::int64_t raw) noexcept {
+  const bool wraps = !signal.is_signed && signal.length == 64;
+  const double number =
+      wraps ? static_cast<double>(static_cast<std::uint64_t>(raw)) : static_cast<double>(raw);
+  return number * signal.scale + signal.offset;
+}
+
+/// The signal's physical value. kMalformed when the frame is too short for it.
+[[nodiscard]] constexpr Result<double> extract_physical(const SignalLayout& signal,
+                                                        const CanFrame& frame) noexcept {
+  const Result<std::int64_t> raw = extract_raw(signal, frame);
+  if (!raw.ok()) return raw.error();
+  return to_physical(signal, raw.value());
+}
+
+}  // namespace dampline

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/sample/screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dampline {
+namespace {
+constexpr double kStepsMoved = 8.0;
+constexpr double kFlatTopRms = 4.0;  // smaller extremes repeat by chance
+}  // namespace
+
+Result<ScreenConfig> SampleScreen::check(const ScreenConfig& config) noexcept {
+  const double window = config.sample_rate_hz * config.stuck_s;
+  if (!(window >= 2.0 && window <= static_cast<double>(kCapacity))) return Errc::kInvalidConfig;
+  if (!(config.moved_mps2 > 0.0)) return Errc::kInvalidConfig;
+  for (const double step_mps2 : config.step_mps2) {
+    if (!(step_mps2 >= 0.0)) return Errc::kInvalidConfig;
+  }
+  return config;
+}
+
+SampleScreen::SampleScreen(const ScreenConfig& config) noexcept
+    : window_{static_cast<std::size_t>(std::llround(config.sample_rate_hz * config.stuck_s))},
+      config_{config} {}
+
+SampleScreen::Held& SampleScreen::held(std::size_t age) noexcept {
+  return ring_[(newest_ + kCapacity - age) % kCapacity];
+}
+
+const SampleScreen::Held& SampleScreen::held(std::size_t age) const noexcept {
+  return ring_[(newest_ + kCapacity - age) % kCapacity];
+}
+
+bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
+  newest_ = (newest_ + 1) % kCapacity;
+  ring_[newest_] = Held{sample, {}};
+  ++count_;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    follow(c, sample);
+    if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
+    if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    judge_stuck(c);
+    if (config_.find_flat_tops) judge_flat_top(c);
+  }
+  if (count_ < window_) return false;
+  take_oldest(out);
+  return true;
+}
+
+bool SampleScreen::drain(Screened& out) noexcept {
+  if (count_ == 0) return false;
+  take_oldest(out);
+  return true;
+}
+
+void SampleScreen::take_oldest(Screened& out) noexcept {
+  const Held& oldest = held(count_ - 1);
+  out = Screened{oldest.sample, Verdict::kGood, 0};
+  out.verdict = *std::max_element(oldest.verdict.begin(), oldest.verdict.end());
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (out.verdict != Verdict::kGood && oldest.verdict[c] == out.verdict) {
+      out.channels = static_cast<std::uint8_t>(out.channels | (1U << c));
+    }
+  }
+  --count_;
+}
+
+void SampleScreen::mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept {
+  const std::size_t reach = std::min(static_cast<std::size_t>(samples), count_);
+  for (std::size_t age = 0; age < reach; ++age) {
+    Verdict& known = held(age).verdict[channel];
+    known = std::max(known, verdict);
+  }
+}
+
+// Lost samples do not end a run: a stuck channel stays stuck. A pause does.
+void SampleScreen::follow(std::size_t channel, const Sample& sample) noexcept {
+  Run& run = runs_[channel];
+  const double value = sample.accel_mps2[channel];
+  const bool paused =
+      count_ > 1 && sample.tick - held(1).sample.tick > static_cast<std::int64_t>(window_);
+  if (run.samples > 0 && !paused && value == run.value) {
+    ++run.samples;
+  } else {
+    run.value = value;
+    run.first_tick = sample.tick;
+    run.samples = 1;
+    run.stuck = false;
+  }
+  if (!std::isfinite(value)) return;
+  run.count += 1.0;
+  const double off = value - run.mean;
+  run.mean += off / run.count;
+  run.sum_squares += off * (value - run.mean);
+  if (run.count == 1.0 || value > run.highest) {
+    run.highest = value;
+    run.flat_top = false;
+  }
+  if (run.count == 1.0 || value < run.lowest) {
+    run.lowest = value;
+    run.flat_bottom = false;
+  }
+}
+
+bool SampleScreen::holds(std::size_t channel) const noexcept {
+  return held(0).sample.tick - runs_[channel].first_tick + 1 >= static_cast<std::int64_t>(window_);
+}
+
+void SampleScreen::judge_stuck(std::size_t channel) noexcept {
+  Run& run = runs_[channel];
+  if (run.stuck) {
+    mark(channel, 1, Verdict::kStuck);
+    return;
+  }
+  if (!holds(channel)) return;
+  for (std::size_t other = 0; other < kChannels; ++other) {
+    if (other == channel || holds(other) || !moved(other)) continue;
+    run.stuck = true;
+    mark(channel, run.samples, Verdict::kStuck);
+    return;
+  }
+}
+
+bool SampleScreen::moved(std::size_t channel) const noexcept {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  const std::int64_t first_tick = held(0).sample.tick - static_cast<std::int64_t>(window_) + 1;
+  for (std::size_t age = 0; age < count_ && held(age).sample.tick >= first_tick; ++age) {
+    const double value = held(age).sample.accel_mps2[channel];
+    if (!std::isfinite(value)) continue;
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  const double step = config_.step_mps2[channel];
+  return highest - lowest > (step > 0.0 ? kStepsMoved * step : config_.moved_mps2);
+}
+
+void SampleScreen::judge_flat_top(std::size_t channel) noexcept {
+  Run& run = runs_[channel];
+  if (run.count < static_cast<double>(window_)) return;
+  const bool top = run.value == run.highest;
+  if (!top && run.value != run.lowest) return;
+  bool& flat = top ? run.flat_top : run.flat_bottom;
+  if (flat) {
+    mark(channel, 1, Verdict::kSaturated);
+    return;
+  }
+  const double rms = std::sqrt(run.sum_squares / run.count);
+  const double magnitude = std::abs(run.value - run.mean);
+  if (run.samples < kFlatTop || magnitude <= std::max(kFlatTopRms * rms, config_.moved_mps2))
+    return;
+  flat = true;
+  mark(channel, run.samples, Verdict::kSaturated);
+}
+
+}  // namespace dampline

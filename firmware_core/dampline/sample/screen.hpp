@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/result.hpp"
+#include "dampline/sample/sample.hpp"
+
+namespace dampline {
+
+/// In order of rank: a sample with several faults has the last.
+enum class Verdict : std::uint8_t { kGood, kStuck, kSaturated, kNotFinite };
+
+/// A sample and whether its values are what the car did.
+struct Screened {
+  Sample sample{};
+  Verdict verdict{Verdict::kGood};
+  std::uint8_t channels{0};  ///< bit c set: channel c is the reason
+};
+
+struct ScreenConfig {
+  double sample_rate_hz{300.0};
+  double stuck_s{0.5};  ///< as long as this on one value, while another channel moves: stuck
+  /// Resolution of each channel; a channel moves when it spans more than eight steps. 0: unknown.
+  std::array<double, kChannels> step_mps2{};
+  double moved_mps2{0.5};  ///< moves when it spans more than this, where the step is unknown
+  /// For inputs without a known full scale: flat tops at the extreme of the record are saturation.
+  bool find_flat_tops{false};
+};
+
+/// Screens samples before anything uses them. They come out stuck_s later, because it takes that
+/// long to know that a channel is stuck, and the verdict must reach back to the first stuck sample.
+/// A sensor that is quiet because the car stands is not stuck: then no other channel moves.
+class SampleScreen {
+ public:
+  static constexpr std::size_t kCapacity = 256;
+  static constexpr std::int64_t kFlatTop = 4;  ///< equal values in a row at the extreme
+
+  /// kInvalidConfig unless 2 <= sample_rate_hz * stuck_s <= kCapacity and moved_mps2 > 0.
+  [[nodiscard]] static Result<ScreenConfig> check(const ScreenConfig& config) noexcept;
+  /// Precondition: check(config).ok().
+  explicit SampleScreen(const ScreenConfig& config) noexcept;
+
+  /// True when it wrote the sample that is now old enough.
+  bool push(const Sample& sample, Screened& out) noexcept;
+  /// End of the record: the samples that are still held, one per call.
+  bool drain(Screened& out) noexcept;
+  /// Samples by which the output lags.
+  [[nodiscard]] std::size_t delay() const noexcept { return window_ - 1; }
+
+ private:
+  /// One channel's run of equal values, and what it has reached so far.
+  struct Run {
+    double value{0.0};
+    std::int64_t first_tick{0};
+    std::int64_t samples{0};
+    bool stuck{false};
+    double count{0.0};  // of finite values, their mean and sum of squares about it
+    double mean{0.0};
+    double sum_squares{0.0};
+    double lowest{0.0};
+    double highest{0.0};
+    bool flat_bottom{false};  // the lowest value is a level at which the channel clips
+    bool flat_top{false};     // so is the highest
+  };
+  struct Held {
+    Sample sample{};
+    std::array<Verdict, kChannels> verdict{};
+  };
+
+  void mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept;
+  void follow(std::size_t channel, const Sample& sample) noexcept;
+  void judge_stuck(std::size_t channel) noexcept;
+  void judge_flat_top(std::size_t channel) noexcept;
+  [[nodiscard]] bool holds(std::size_t channel) const noexcept;  // one value for the whole window
+  [[nodiscard]] bool moved(std::size_t channel) const noexcept;
+  [[nodiscard]] Held& held(std::size_t age) noexcept;
+  [[nodiscard]] const Held& held(std::size_t age) const noexcept;
+  void take_oldest(Screened& out) noexcept;
+
+  std::size_t window_;
+  ScreenConfig config_;
+  std::array<Run, kChannels> runs_{};
+  std::array<Held, kCapacity> ring_{};
+  std::size_t newest_{0};  // slot of the newest
+  std::size_t count_{0};
+};
+
+}  // namespace dampline

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/estimate/columns.hpp"
+#include "dampline/wavelet/law_average.hpp"
+#include "dampline/wavelet/window_bank.hpp"
+
+namespace dampline {
+
+/// Galerkin rows from a stretch of samples without gaps. Samples are numbered from 0 in a stretch;
+/// accelerations come first, the law's columns of the same sample some seconds later.
+class RowBuilder {
+ public:
+  explicit RowBuilder(double sample_rate_hz) noexcept : bank_{sample_rate_hz} {}
+
+  [[nodiscard]] const WindowBank& bank() const noexcept { return bank_; }
+
+  /// Accelerations of sample n: z_b'' and y'' = 2 z_b'' - z_1'' - z_2''.
+  void set_accelerations(std::int64_t n, double frame_mps2, double relative_mps2) noexcept {
+    frame_mps2_[raw(n)] = frame_mps2;
+    relative_mps2_[raw(n)] = relative_mps2;
+  }
+
+  /// The law's columns at sample n, and whether the truck stood still then.
+  void set_law(std::int64_t n, const LawColumns::Values& values, bool still) noexcept {
+    law_[law(n)] = values;
+    still_[law(n)] = still ? 1.0F : 0.0F;
+  }
+
+  /// The row of a scale centred on sample n. Needs the law at n - half...n + half and
+  /// the accelerations at n - half - 1...n + half + 1. Cost: (2 half + 1) (kRowColumns - 1)
+  /// multiplications.
+  [[nodiscard]] GalerkinRow row(std::size_t scale, std::int64_t n) const noexcept;
+  /// Share of the row's weight that lies on samples at a standstill, 0...1.
+  [[nodiscard]] double still_share(std::size_t scale, std::int64_t n) const noexcept;
+
+ private:
+  static constexpr std::size_t kRawRing = 2048;
+  static constexpr std::size_t kLawRing = 2 * static_cast<std::size_t>(WindowBank::kMaxHalf) + 2;
+  static std::size_t raw(std::int64_t n) noexcept {
+    return static_cast<std::size_t>(n) & (kRawRing - 1);
+  }
+  static std::size_t law(std::int64_t n) noexcept { return static_cast<std::size_t>(n) % kLawRing; }
+
+  WindowBank bank_;
+  std::array<double, kRawRing> frame_mps2_{};
+  std::array<double, kRawRing> relative_mps2_{};
+  std::array<LawColumns::Values, kLawRing> law_{};
+  std::array<float, kLawRing> still_{};
+};
+
+}  // namespace dampline

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace dampline {
+
+/// Octave scales of the bank: 2, 4, 8, 16 and 32 Hz at 300 samples a second.
+inline constexpr std::size_t kScales = 5;
+
+/// Compact test functions with four vanishing moments at octave scales, and the derivatives that
+/// integration by parts needs. With B(u) = (1 - u^2)^8, u = n / (half + 1), tau = (half + 1) h:
+///
+///   psi = B'''' / tau^4,  psi1 = B''' / tau^3,  Psi = B'' / tau^2,   psi = psi1' = Psi''
+///
+///   <psi, y> = <Psi, y''>,   <psi, y'> = -<psi1, y''>
+///
+/// so displacement and velocity enter a row through measured accelerations alone: nothing is
+/// integrated, and a constant or a linear drift of a sensor drops out. The tables of a scale share
+/// one normalisation, sum psi^2 = 1. |Fourier transform of psi| peaks at 1.245 / ((half + 1) h) Hz:
+/// at 1.8 Hz for the scale that is named 2 Hz, and so on.
+///
+/// The `lumped` tables are convolved with [1 10 1] / 12: applied to samples they match, to fourth
+/// order, the average by the hat function that the friction law goes through (LawAverage). They
+/// reach one sample further on each side.
+class WindowBank {
+ public:
+  static constexpr double kMaxRateHz = 400.0;
+  static constexpr int kMaxHalf = 278;
+
+  /// `sample_rate_hz` at most kMaxRateHz.
+  explicit WindowBank(double sample_rate_hz) noexcept;
+
+  /// Samples on each side of the centre.
+  [[nodiscard]] int half(std::size_t scale) const noexcept { return windows_[scale].half; }
+  /// Samples between the centres of consecutive rows.
+  [[nodiscard]] int stride(std::size_t scale) const noexcept { return windows_[scale].stride; }
+
+  /// psi at -half...half.
+  [[nodiscard]] std::span<const double> psi(std::size_t scale) const noexcept {
+    return std::span{psi_}.subspan(windows_[scale].start + 1, taps(scale));
+  }
+  /// Sum of |psi|.
+  [[nodiscard]] double mass(std::size_t scale) const noexcept { return windows_[scale].mass; }
+
+  /// The lumped tables at -half-1...half+1.
+  [[nodiscard]] std::span<const double> lumped_psi(std::size_t scale) const noexcept {
+    return lumped(lumped_psi_, scale);
+  }
+  [[nodiscard]] std::span<const double> lumped_psi1(std::size_t scale) const noexcept {
+    return lumped(lumped_psi1_, scale);
+  }
+  [[nodiscard]] std::span<const double> lumped_double_integral(std::size_t scale) const noexcept {
+    return lumped(lumped_double_integral_, scale);
+  }
+
+ private:
+  struct Window {
+    std::size_t start{0};
+    int half{0};
+    int stride{0};
+    double mass{0.0};
+  };
+  static constexpr std::size_t kArena = 1104;  // sum of 2 half + 3 at the highest rate
+  using Table = std::array<double, kArena>;
+
+  [[nodiscard]] std::size_t taps(std::size_t scale) const noexcept {
+    return 2 * static_cast<std::size_t>(windows_[scale].half) + 1;
+  }
+  [[nodiscard]] std::span<const double> lumped(const Table& table,
+                                               std::size_t scale) const noexcept {
+    return std::span{table}.subspan(windows_[scale].start, taps(scale) + 2);
+  }
+  void fill(Window& window, double step_s) noexcept;
+
+  std::array<Window, kScales> windows_{};
+  Table psi_{};
+  Table lumped_psi_{};
+  Table lumped_psi1_{};
+  Table lumped_double_integral_{};
+};
+
+}  // namespace dampline

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "dampline/sample/can_frame.hpp"
+#include "sim_hw/random.hpp"
+#include "sim_hw/simulation.hpp"
+
+namespace dampline::sim {
+
+/// The three sensor nodes: one message each, 4 bytes (dbc/dampline_sensors.dbc).
+///   ACCEL_Z 0|12@1-   COUNTER 12|12@1+   STATUS 24|8@1+ (bit 0: full-scale code)
+struct NodeConfig {
+  std::array<std::uint32_t, kChannels> id{0x310, 0x311, 0x312};
+  std::int64_t start_time_ns{1'700'000'000'000'000'000};            ///< of tick 0
+  std::array<double, kChannels> arrival_s{0.2e-3, 0.4e-3, 0.6e-3};  ///< after the sampling instant
+  double jitter_s{50e-6};  ///< of the arrival, rms, cut off at 90 us
+};
+inline constexpr std::array<std::string_view, kChannels> kMessageNames{"TRUCK_FRAME", "WHEELSET_1",
+                                                                       "WHEELSET_2"};
+inline constexpr std::uint32_t kCounterModulus = 4096;
+
+/// Packs samples into frames. Each node counts its own samples from a start that the seed draws.
+class SensorNodes {
+ public:
+  SensorNodes(const NodeConfig& config, std::uint64_t seed);
+  /// The frames of one sampling instant in the order of arrival.
+  [[nodiscard]] std::array<CanFrame, kChannels> pack(const SimulatedSample& sample) noexcept;
+
+ private:
+  NodeConfig config_;
+  Random random_;
+  std::array<std::uint32_t, kChannels> first_counter_{};
+};
+
+/// The DBC file of the nodes for sensors of these ranges.
+[[nodiscard]] std::string dbc_text(const SensorConfig& sensors, const NodeConfig& nodes = {});
+
+}  // namespace dampline::sim

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "sim_hw/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dampline::sim {
+namespace {
+
+constexpr double kStepS = 1.0 / kStepRateHz;
+constexpr std::int64_t kDecimation = kStepRateHz / kSampleRateHz;
+constexpr double kTrackMarginM = 0.5;
+
+Truth instant_of(const TruckState& state) {
+  return {state.deflection_m, state.velocity_mps, state.damping_force_n, state.restoring_force_n,
+          state.frame_mps2};
+}
+
+}  // namespace
+
+Simulation::Simulation(const SimulationConfig& config)
+    : config_(config),
+      track_(config.track, config.truck.wheelbase_m + kTrackMarginM, config.seed),
+      truck_(config.truck),
+      shocks_(config.impulses, config.seed),
+      anti_alias_(config.sensors.anti_alias_corner_hz, kStepRateHz),
+      sensors_(config.sensors, config.seed),
+      history_(kHistory) {
+  settle_steps_ = std::llround(config.settle_s * kSampleRateHz) * kDecimation;
+  const auto& skew = config.sensors.time_skew_s;
+  has_skew_ = std::ranges::any_of(skew, [](double s) { return s != 0.0; });
+  const double earliest = -std::min(0.0, std::ranges::min(skew));
+  if (has_skew_) look_ahead_ = static_cast<std::int64_t>(std::ceil(earliest * kStepRateHz)) + 2;
+  now_ = excitation(-config.settle_s, 0.0, speed_at(config.speed, -config.settle_s));
+  for (std::int64_t i = 0; i < settle_steps_ + look_ahead_; ++i) step();
+}
+
+Excitation Simulation::excitation(double time_s, double position_m, const Speed& speed) {
+  track_.extend_to(position_m);
+  const ImpulseEffects& impulses = config_.impulses;
+  Excitation result;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double place = i == 0 ? position_m : position_m - config_.truck.wheelbase_m;
+    TrackPoint point = track_.at(place);
+    const auto add = [&](const TrackPoint& more) {
+      point.slope += more.slope;
+      point.curvature_pm += more.curvature_pm;
+    };
+    if (impulses.joint_depth_m != 0.0) {
+      add(dip(place, impulses.joint_depth_m, impulses.joint_length_m, impulses.joint_spacing_m));
+    }
+    if (i == 0 && impulses.flat_depth_m != 0.0) {
+      add(dip(place, impulses.flat_depth_m, impulses.flat_length_m,
+              impulses.wheel_circumference_m));
+    }
+    result.wheelset_mps2[i] =
+        point.curvature_pm * speed.speed_mps * speed.speed_mps + point.slope * speed.accel_mps2;
+  }
+  result.force_n = shocks_.force_n(time_s);
+  return result;
+}
+
+void Simulation::step() {
+  const double time_s = static_cast<double>(steps_ - settle_steps_) * kStepS;
+  const Speed a = speed_at(config_.speed, time_s);
+  const Speed m = speed_at(config_.speed, time_s + 0.5 * kStepS);
+  const Speed b = speed_at(config_.speed, time_s + kStepS);
+  // Simpson's rule, over half a step and over all of it
+  const double half_way =
+      position_m_ + kStepS / 24.0 * (5.0 * a.speed_mps + 8.0 * m.speed_mps - b.speed_mps);
+  position_m_ += kStepS / 6.0 * (a.speed_mps + 4.0 * m.speed_mps + b.speed_mps);
+  const Excitation middle = excitation(time_s + 0.5 * kStepS, half_way, m);
+  const Excitation end = excitation(time_s + kStepS, position_m_, b);
+  truck_.step(now_, middle, end, time_s, kStepS);
+  now_ = end;
+  ++steps_;
+  Moment& moment = history_[static_cast<std::size_t>(steps_) % kHistory];
+  moment.instant = instant_of(truck_.state());
+  moment.speed_mps = b.speed_mps;
+  moment.position_m = position_m_;
+  const Truth& t = moment.instant;
+  moment.filtered =
+      anti_alias_.update({t.frame_mps2, end.wheelset_mps2[0], end.wheelset_mps2[1], t.deflection_m,
+                          t.velocity_mps, t.damping_force_n, t.restoring_force_n, t.frame_mps2});
+}
+
+const Simulation::Moment& Simulation::past(std::int64_t steps) const noexcept {
+  return history_[static_cast<std::size_t>(steps_ - steps) % kHistory];
+}
+
+// Cubic Lagrange interpolation at 2400 Hz of signals that end near 100 Hz.
+double Simulation::skewed(std::size_t channel) const noexcept {
+  const double back =
+      static_cast<double>(look_ahead_) + config_.sensors.time_skew_s[channel] * kStepRateHz;
+  const double whole = std::floor(back);
+  const double u = back - whole;
+  const auto n = static_cast<std::int64_t>(whole);
+  const auto x = [&](std::int64_t offset) { return past(n + offset).filtered[channel]; };
+  return -u * (u - 1.0) * (u - 2.0) / 6.0 * x(-1) + (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0 * x(0) -
+         (u + 1.0) * u * (u - 2.0) / 2.0 * x(1) + (u + 1.0) * u * (u - 1.0) / 6.0 * x(2);
+}
+
+SimulatedSample Simulation::next() {
+  const Moment& moment = past(look_ahead_);
+  const Signals& seen = moment.filtered;
+  SimulatedSample sample;
+  sample.tick = tick_;
+  sample.time_s = static_cast<double>(tick_) / kSampleRateHz;
+  std::array<double, kChannels> accel{seen[0], seen[1], seen[2]};
+  if (has_skew_) {
+    for (std::size_t c = 0; c < kChannels; ++c) accel[c] = skewed(c);
+  }
+  sample.counts = sensors_.convert(accel, sample.time_s);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const int counts = sample.counts[c];
+    sample.accel_mps2[c] = counts * count_scale_mps2(config_.sensors.range_mps2[c]);
+    if (counts == kMaxCount || counts == kMinCount) {
+      sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
+    }
+  }
+  sample.truth = {seen[3], seen[4], seen[5], seen[6], seen[7]};
+  sample.instant = moment.instant;
+  sample.speed_mps = moment.speed_mps;
+  sample.position_m = moment.position_m;
+  ++tick_;
+  for (std::int64_t i = 0; i < kDecimation; ++i) step();
+  return sample;
+}
+
+double anti_alias_delay_s(const SensorConfig& config) noexcept {
+  // sum of the damping terms of the analogue prototype over its corner
+  const double sum =
+      2.0 * (std::sin(std::numbers::pi / 8.0) + std::sin(3.0 * std::numbers::pi / 8.0));
+  const double corner =
+      2.0 * kStepRateHz * std::tan(std::numbers::pi * config.anti_alias_corner_hz / kStepRateHz);
+  return sum / corner;
+}
+
+Sample to_sample(const SimulatedSample& sample) noexcept {
+  return {.tick = sample.tick,
+          .time_ns = std::llround(sample.time_s * 1e9),
+          .accel_mps2 = sample.accel_mps2,
+          .saturated = sample.saturated};
+}
+
+}  // namespace dampline::sim

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dampline/sample/sample.hpp"
+#include "sim_hw/butterworth.hpp"
+#include "sim_hw/effects/impulses.hpp"
+#include "sim_hw/sensors.hpp"
+#include "sim_hw/speed_profile.hpp"
+#include "sim_hw/track.hpp"
+#include "sim_hw/truck.hpp"
+
+namespace dampline::sim {
+
+inline constexpr int kStepRateHz = 2400;
+inline constexpr int kSampleRateHz = 300;
+
+/// A run. The defaults are a laden car at 80 km/h on good track.
+struct SimulationConfig {
+  std::uint64_t seed{1};
+  TruckConfig truck{};
+  TrackConfig track{};
+  SpeedConfig speed{};
+  SensorConfig sensors{};
+  ImpulseEffects impulses{};
+  double settle_s{10.0};  ///< runs before time 0, so that the record begins in full motion
+};
+
+/// What really happened; for tests and plots only.
+struct Truth {
+  double deflection_m{0.0};
+  double velocity_mps{0.0};
+  double damping_force_n{0.0};
+  double restoring_force_n{0.0};
+  double frame_mps2{0.0};
+};
+
+struct SimulatedSample {
+  std::int64_t tick{0};  ///< 0 is time 0
+  double time_s{0.0};    ///< tick / 300, the sampling instant
+  std::array<std::int16_t, kChannels> counts{};
+  std::array<double, kChannels> accel_mps2{};  ///< counts times count_scale_mps2(range)
+  std::uint8_t saturated{0};                   ///< bit c: channel c stands at a full-scale code
+  Truth truth{};    ///< through the anti-alias filter of the channels, so at the same delay
+  Truth instant{};  ///< at time_s itself, unfiltered
+  double speed_mps{0.0};
+  double position_m{0.0};  ///< of wheelset 1
+};
+
+/// Track, truck and sensors, sample by sample, for as long as wanted in constant memory.
+class Simulation {
+ public:
+  explicit Simulation(const SimulationConfig& config);
+  [[nodiscard]] SimulatedSample next();
+
+ private:
+  static constexpr std::size_t kSignals = 8;  // three accelerations, then Truth
+  using Signals = std::array<double, kSignals>;
+  struct Moment {
+    Signals filtered{};
+    Truth instant{};
+    double speed_mps{0.0};
+    double position_m{0.0};
+  };
+  static constexpr std::size_t kHistory = 128;  // 53 ms of steps
+  [[nodiscard]] Excitation excitation(double time_s, double position_m, const Speed& speed);
+  void step();
+  [[nodiscard]] double skewed(std::size_t channel) const noexcept;
+  [[nodiscard]] const Moment& past(std::int64_t steps) const noexcept;
+
+  SimulationConfig config_;
+  Track track_;
+  Truck truck_;
+  Shocks shocks_;
+  ButterworthLowPass<kSignals> anti_alias_;
+  Sensors sensors_;
+  std::vector<Moment> history_;
+  std::int64_t steps_{0};  // done, settling included
+  std::int64_t settle_steps_{0};
+  std::int64_t look_ahead_{0};  // steps, for channels that are early
+  bool has_skew_{false};
+  double position_m_{0.0};
+  Excitation now_{};
+  std::int64_t tick_{0};
+};
+
+/// Group delay of the anti-alias filter at low frequencies: how much `truth` lags `instant`.
+[[nodiscard]] double anti_alias_delay_s(const SensorConfig& config) noexcept;
+
+[[nodiscard]] Sample to_sample(const SimulatedSample& sample) noexcept;
+
+}  // namespace dampline::sim

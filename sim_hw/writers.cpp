@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "sim_hw/writers.hpp"
+
+#include <array>
+#include <cstdint>
+#include <iterator>
+
+namespace dampline::sim {
+namespace {
+
+constexpr std::string_view kHex = "0123456789ABCDEF";
+
+/// `digits` decimal digits of `value`, leading zeros kept.
+char* put_decimal(char* at, std::uint64_t value, int digits) noexcept {
+  for (int i = digits - 1; i >= 0; --i) {
+    at[i] = static_cast<char>('0' + value % 10);
+    value /= 10;
+  }
+  return at + digits;
+}
+
+char* put_hex(char* at, std::uint32_t value, int digits) noexcept {
+  for (int i = digits - 1; i >= 0; --i) {
+    at[i] = kHex[value & 0xfU];
+    value >>= 4U;
+  }
+  return at + digits;
+}
+
+char* put_text(char* at, std::string_view text) noexcept { return at + text.copy(at, text.size()); }
+
+}  // namespace
+
+void append_candump(TextBuffer& text, const CanFrame& frame, std::string_view interface_name) {
+  std::array<char, 96> line{};
+  const auto micro = static_cast<std::uint64_t>(frame.time_ns) / 1000;
+  char* at = line.data();
+  *at++ = '(';
+  at = put_decimal(at, micro / 1'000'000, 10);
+  *at++ = '.';
+  at = put_decimal(at, micro % 1'000'000, 6);
+  at = put_text(at, ") ");
+  at = put_text(at, interface_name.substr(0, 15));
+  *at++ = ' ';
+  at = put_hex(at, frame.id, frame.extended ? 8 : 3);
+  *at++ = '#';
+  for (std::size_t i = 0; i < frame.length && i < 8; ++i) at = put_hex(at, frame.data[i], 2);
+  *at++ = '\n';
+  text.append(line.data(), at);
+}
+
+void append_csv(TextBuffer& text, const SimulatedSample& sample) {
+  const auto& a = sample.accel_mps2;
+  fmt::format_to(std::back_inserter(text), "{:.9f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, a[0],
+                 a[1], a[2]);
+}
+
+std::string truth_header(const SimulationConfig& config) {
+  const TruckConfig& t = config.truck;
+  const TrackConfig& track = config.track;
+  std::string text;
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "# seed = {}\n# moving_mass_kg = {}\n# stiffness_npm = {}\n", config.seed,
+                 t.moving_mass_kg, t.stiffness_npm);
+  fmt::format_to(out, "# friction_positive_n = {}\n# friction_negative_n = {}\n",
+                 t.friction_scale * t.friction_positive_n,
+                 t.friction_scale * t.friction_negative_n);
+  fmt::format_to(out, "# speed_kmh = {}\n# track_amplitude_m_rad = {}\n# short_wave_mps2 = {}\n",
+                 3.6 * config.speed.speed_mps, track.amplitude_m_rad, track.short_wave_mps2);
+  fmt::format_to(out, "# noise_mps2 = {}\n# anti_alias_delay_s = {}\n", config.sensors.noise_mps2,
+                 anti_alias_delay_s(config.sensors));
+  fmt::format_to(out,
+                 "# Columns without the suffix _instant went through the sensors' anti-alias "
+                 "filter and have its delay.\n");
+  for (const std::string_view suffix : {"", "_instant"}) {
+    fmt::format_to(out, "{}deflection_m{},velocity_mps{},damping_force_n{},restoring_force_n{}",
+                   suffix.empty() ? "time_s," : ",", suffix, suffix, suffix, suffix);
+    fmt::format_to(out, ",frame_accel_mps2{}", suffix);
+  }
+  text += ",speed_mps,position_m\n";
+  return text;
+}
+
+void append_truth(TextBuffer& text, const SimulatedSample& sample) {
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "{:.9f}", sample.time_s);
+  for (const Truth* truth : {&sample.truth, &sample.instant}) {
+    fmt::format_to(out, ",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", truth->deflection_m,
+                   truth->velocity_mps, truth->damping_force_n, truth->restoring_force_n,
+                   truth->frame_mps2);
+  }
+  fmt::format_to(out, ",{:.6f},{:.4f}\n", sample.speed_mps, sample.position_m);
+}
+
+}  // namespace dampline::sim

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+#include "dampline/sample/can_frame.hpp"
+#include "sim_hw/simulation.hpp"
+
+namespace dampline::sim {
+
+/// Text grows here; whoever owns it empties it into a file.
+using TextBuffer = fmt::memory_buffer;
+
+/// One line as `candump -l` writes it: "(1700000000.000200) can0 310#0A1B2C00\n".
+/// Classic data frames only.
+void append_candump(TextBuffer& text, const CanFrame& frame, std::string_view interface_name);
+
+inline constexpr std::string_view kSampleHeader =
+    "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
+/// One row of the canonical CSV.
+void append_csv(TextBuffer& text, const SimulatedSample& sample);
+
+/// The parameters of the run as comment lines, then the header of the truth columns.
+[[nodiscard]] std::string truth_header(const SimulationConfig& config);
+/// One row of truth: as the sensors' filter shows it, then as it is at the instant.
+void append_truth(TextBuffer& text, const SimulatedSample& sample);
+
+}  // namespace dampline::sim

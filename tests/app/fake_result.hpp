@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "app/run/result.hpp"
+
+namespace dampline::app {
+
+/// A truck's result with everything in it, made from closed formulas: nothing was identified.
+inline RunResult fake_result() {
+  RunResult r;
+  r.kind = "truck";
+  r.headline = "Dry friction of 8 351 N ± 14 N on a spring of 5.262 MN/m ± 0.016 MN/m.";
+  r.model = {"linear spring", "coulomb"};
+  r.parameters = {{"coulomb", 8351.2, 14.3, "N"},
+                  {"stiffness", 5.262e6, 1.6e4, "N/m"},
+                  {"viscous", 120.0, 340.0, "N s/m"},
+                  {"law_width", 1.62e-3, 2.1e-4, "m/s"}};
+  r.counts = {
+      {"samples", 90000}, {"gaps", 2}, {"lost", 31}, {"blocks", 150}, {"blocks_excluded", 4}};
+  r.fit = {0.0112, 0.1058, 0.0115};
+  r.stick_share = 0.031;
+  r.excitation = 0.97;
+  r.asymmetry = "not observable from accelerations";
+  r.sample_rate_hz = Estimate{299.9987, 0.0004};
+  r.latency_s = 2.65;
+  r.duration_s = 300.0;
+  r.notes = {"Columns that were not used: <speed_kmh>."};
+  const double nodes[] = {3e-3, 6e-3, 10e-3, 15e-3, 22e-3, 30e-3, 42e-3, 60e-3};
+  for (int i = 7; i >= 0; --i)
+    r.curve.push_back(
+        {-nodes[i], -8351.0 + 30.0 * i, 18.0 + 12.0 * i, std::uint64_t(9000 / (1 + i * i))});
+  r.curve.push_back({0.0, -8200.0, 40.0, 0});
+  r.curve.push_back({0.0, 8200.0, 40.0, 0});
+  for (int i = 0; i < 8; ++i)
+    r.curve.push_back(
+        {nodes[i], 8351.0 - 30.0 * i, 18.0 + 12.0 * i, std::uint64_t(9100 / (1 + i * i))});
+  r.convergence.names = {"coulomb", "stiffness"};
+  r.convergence.units = {"N", "N/m"};
+  for (int i = 1; i <= 75; ++i) {
+    const double t = 4.0 * i;
+    const double s = 1.0 / std::sqrt(t);
+    r.convergence.rows.push_back({t,
+                                  {{8351.0 + 240.0 * s * std::sin(0.3 * t), 250.0 * s},
+                                   {5.262e6 + 3e5 * s * std::cos(0.2 * t), 2.7e5 * s}}});
+  }
+  for (int i = 0; i < 6000; ++i) {
+    const double t = 30.0 + i / 300.0;
+    const double w = 2.0 * std::numbers::pi * 2.7;
+    const double a = 0.8e-3 * (1.0 + 0.5 * std::sin(t));
+    r.motion.push_back({t, a * std::sin(w * t), a * w * std::cos(w * t)});
+  }
+  r.excluded = {{41.0, 45.1, "gap"}, {120.0, 122.0, "saturated"}, {200.0, 202.0, "gap"}};
+  return r;
+}
+
+}  // namespace dampline::app

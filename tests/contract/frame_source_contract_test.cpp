@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// The contract of hal::FrameSource, over every implementation.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/candump/candump_source.hpp"
+#include "hal/frame_source.hpp"
+#include "sim_hw/simulated_source.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr std::size_t kFrames = 300;
+
+std::string candump_text() {
+  std::string text;
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    text += fmt::format("(1600000000.{:06}) can0 {:03X}#{:04X}\n", i * 1111, 0x100 + i % 3, i);
+  }
+  return text;
+}
+
+/// A source in memory: the least that fulfils the contract.
+class FakeSource final : public hal::FrameSource {
+ public:
+  explicit FakeSource(std::size_t frames) : frames_{frames} {}
+
+ private:
+  Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override {
+    if (next_ == frames_ && !out.empty()) return Errc::kEndOfStream;
+    std::size_t count = 0;
+    for (; count < out.size() && next_ < frames_; ++count, ++next_) {
+      out[count] = CanFrame{};
+      out[count].time_ns = static_cast<std::int64_t>(next_) * 1000;
+    }
+    return count;
+  }
+  Result<bool> do_wait(std::chrono::nanoseconds /*timeout*/) noexcept override { return true; }
+  [[nodiscard]] hal::SourceHealth do_health() const noexcept override {
+    hal::SourceHealth health;
+    health.frames = next_;
+    return health;
+  }
+  std::size_t frames_;
+  std::size_t next_{0};
+};
+
+/// How each implementation is brought to deliver kFrames frames and then end.
+class Fake {
+ public:
+  hal::FrameSource& source() { return source_; }
+
+ private:
+  FakeSource source_{kFrames};
+};
+
+class CandumpFile {
+ public:
+  CandumpFile()
+      : path_{std::filesystem::temp_directory_path() /
+              fmt::format("dampline_contract_{}.log", ::getpid())} {
+    std::ofstream{path_} << candump_text();
+    source_ = std::move(drivers::CandumpSource::open({.path = path_.string()}).value());
+  }
+  ~CandumpFile() { std::filesystem::remove(path_); }
+  CandumpFile(const CandumpFile&) = delete;
+  CandumpFile& operator=(const CandumpFile&) = delete;
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<drivers::CandumpSource> source_;
+};
+
+/// A pipe in place of standard input while the source is opened.
+class Pipe {
+ public:
+  Pipe() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::pipe(ends.data()), 0);
+    writer_ = ends[1];
+    const int kept = ::dup(STDIN_FILENO);
+    ::dup2(ends[0], STDIN_FILENO);
+    ::close(ends[0]);
+    source_ = std::move(drivers::CandumpSource::open({.path = "-"}).value());
+    if (kept >= 0) ::dup2(kept, STDIN_FILENO);
+    if (kept >= 0) ::close(kept);
+  }
+  ~Pipe() { close(); }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void write(std::string_view text) const {
+    EXPECT_EQ(::write(writer_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  void close() {
+    if (writer_ >= 0) ::close(writer_);
+    writer_ = -1;
+  }
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  int writer_{-1};
+  std::unique_ptr<drivers::CandumpSource> source_;
+};
+
+class CandumpPipe {
+ public:
+  CandumpPipe() {
+    pipe_.write(candump_text());
+    pipe_.close();
+  }
+  hal::FrameSource& source() { return pipe_.source(); }
+
+ private:
+  Pipe pipe_;
+};
+
+class Simulated {
+ public:
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  std::unique_ptr<sim::SimulatedSource> source_ =
+      std::make_unique<sim::SimulatedSource>(sim::SimulationConfig{}, kFrames / kChannels);
+};
+
+template <class Implementation>
+class FrameSourceContract : public ::testing::Test {
+ protected:
+  hal::FrameSource& source() { return implementation_.source(); }
+  /// Everything up to the end, `some` frames at a time.
+  std::vector<CanFrame> read_all(std::size_t some) {
+    std::vector<CanFrame> frames;
+    std::vector<CanFrame> part(some);
+    for (;;) {
+      const auto count = source().read(part);
+      if (!count.ok()) break;
+      EXPECT_LE(count.value(), some);
+      frames.insert(frames.end(), part.begin(),
+                    part.begin() + static_cast<std::ptrdiff_t>(count.value()));
+      if (frames.size() > kFrames) break;
+    }
+    return frames;
+  }
+
+ private:
+  Implementation implementation_;
+};
+
+using Implementations = ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated>;
+TYPED_TEST_SUITE(FrameSourceContract, Implementations);
+
+TYPED_TEST(FrameSourceContract, DeliversFramesInNonDecreasingTime) {
+  const auto frames = this->read_all(7);
+  ASSERT_EQ(frames.size(), kFrames);
+  EXPECT_TRUE(
+      std::is_sorted(frames.begin(), frames.end(),
+                     [](const CanFrame& a, const CanFrame& b) { return a.time_ns < b.time_ns; }));
+}
+
+TYPED_TEST(FrameSourceContract, StaysAtItsEnd) {
+  static_cast<void>(this->read_all(1000));
+  std::array<CanFrame, 4> frames;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(this->source().read(frames).error(), Errc::kEndOfStream);
+}
+
+TYPED_TEST(FrameSourceContract, ReadsNothingIntoNoSpaceAndLosesNothingByIt) {
+  const auto count = this->source().read({});
+  ASSERT_TRUE(count.ok());
+  EXPECT_EQ(count.value(), 0U);
+  EXPECT_EQ(this->read_all(1).size(), kFrames);
+}
+
+TYPED_TEST(FrameSourceContract, CountsWhatItDelivered) {
+  static_cast<void>(this->read_all(11));
+  EXPECT_EQ(this->source().health().frames, kFrames);
+  EXPECT_FALSE(this->source().health().truncated);
+}
+
+TYPED_TEST(FrameSourceContract, SaysThatThereIsSomethingToRead) {
+  const auto something = this->source().wait(std::chrono::milliseconds{1});
+  ASSERT_TRUE(something.ok());
+  EXPECT_TRUE(something.value());
+  static_cast<void>(this->read_all(100));
+  EXPECT_TRUE(
+      this->source().wait(std::chrono::milliseconds{1}).value());  // the end is to be reported
+}
+
+TEST(CandumpPipeSource, DoesNotBlockOnAPipeThatHasNothingYet) {
+  Pipe pipe;
+  std::array<CanFrame, 4> frames;
+  EXPECT_EQ(pipe.source().read(frames).value(), 0U);
+  EXPECT_FALSE(pipe.source().wait(std::chrono::milliseconds{1}).value());
+  pipe.write("(1.000000) can0 123#11\n(1.000001) can0 12");
+  EXPECT_TRUE(pipe.source().wait(std::chrono::seconds{10}).value());
+  EXPECT_EQ(pipe.source().read(frames).value(), 1U);
+  EXPECT_EQ(pipe.source().read(frames).value(), 0U);
+  pipe.write("3#22\n");
+  EXPECT_EQ(pipe.source().read(frames).value(), 1U);
+  EXPECT_EQ(frames[0].data[0], 0x22);
+  pipe.close();
+  EXPECT_EQ(pipe.source().read(frames).error(), Errc::kEndOfStream);
+}
+
+TEST(CandumpPipeSource, SaysThatStandardInputWasEmpty) {
+  Pipe pipe;
+  pipe.close();
+  std::array<CanFrame, 4> frames;
+  EXPECT_EQ(pipe.source().read(frames).error(), Errc::kMalformed);
+  const auto& source = dynamic_cast<const drivers::CandumpSource&>(pipe.source());
+  EXPECT_NE(source.error_text().find("standard input: is empty"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dampline

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/damping/curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "dampline/damping/summary.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr double kMassKg = 2.0e4;
+constexpr double kStiffness = 140.0;  // per unit of mass
+constexpr double kTrueWidthMps = 1.4e-3;
+constexpr double kNoise = 0.02;
+
+/// A damping force per unit of mass whose broken line is known: level, then slopes by segment.
+struct BrokenLine {
+  double level{0.2};
+  std::array<double, kCurveSegments> slope{};
+
+  [[nodiscard]] double operator()(double v) const {
+    double force = level * std::erf(0.886226925452758 * std::abs(v) / kTrueWidthMps);
+    double left = 0.0;
+    for (std::size_t i = 0; i < kCurveSegments; ++i) {
+      const double right = i + 1 < kCurveSegments ? kDefaultCurveNodesMps[i] : 1e9;
+      if (std::abs(v) > left) force += slope[i] * (std::min(std::abs(v), right) - left);
+      left = right;
+    }
+    return v < 0.0 ? -force : force;
+  }
+};
+
+/// Statistics of rows of one sample each: no windows, so that the columns are known exactly.
+std::unique_ptr<Statistics> statistics_of(const BrokenLine& line, double v_rms_mps,
+                                          std::uint64_t seed, double viscous = 0.0) {
+  std::mt19937_64 random{seed};
+  std::normal_distribution<double> normal;
+  const LawColumns law{kDefaultCurveNodesMps};
+  auto out = std::make_unique<Statistics>();
+  out->header.curve_nodes_mps = kDefaultCurveNodesMps;
+  out->header.entry_count = 25;
+  out->header.counts.blocks = 25;
+  for (std::uint32_t e = 0; e < out->header.entry_count; ++e) {
+    ScaleFactors& entry = out->entries[e];
+    for (std::size_t s = 0; s < kScales; ++s) {
+      for (int i = 0; i < 400; ++i) {
+        const double v = v_rms_mps * normal(random);
+        const double y = 0.5e-3 * normal(random);
+        GalerkinRow row;
+        row << law(v), y, v, line(v) + kStiffness * y + viscous * v + kNoise * normal(random);
+        entry.factor[s].absorb(row);
+        entry.rows[s] += 1.0;
+        ++out->header.velocity.moving;
+        out->header.velocity.sum_squares += v * v;
+        if (std::abs(v) < 2e-3) ++out->header.velocity.sticking;
+      }
+      out->total.factor[s].merge(entry.factor[s]);
+      out->total.rows[s] += entry.rows[s];
+    }
+    entry.blocks = 1;
+    ++out->total.blocks;
+  }
+  return out;
+}
+
+Snapshot summary_of(const Statistics& statistics) {
+  return summarise(statistics, {.moving_mass_kg = kMassKg});
+}
+
+TEST(Curve, FindsABrokenLine) {
+  BrokenLine line;
+  line.slope = {4.0, 4.0, 3.0, 2.0, 1.0, 0.0, -1.0, -1.0};
+  const Snapshot s = summary_of(*statistics_of(line, 14e-3, 1));
+  ASSERT_TRUE(s.valid);
+  for (std::size_t i = 0; i + 1 < kCurveSegments; ++i) {
+    const double truth_n = kMassKg * line(s.curve[i].velocity_mps);
+    EXPECT_NEAR(s.curve[i].force_n / truth_n, 1.0, 0.015) << s.curve[i].velocity_mps;
+    EXPECT_NEAR(s.curve[i].force_n, truth_n, 4.0 * s.curve[i].std_n + 0.005 * truth_n);
+  }
+}
+
+TEST(Curve, IsFlatForPureFriction) {
+  const Snapshot s = summary_of(*statistics_of({}, 14e-3, 2));
+  for (const CurvePoint& p : s.curve) {
+    if (p.velocity_mps < 3.0 * kTrueWidthMps) continue;
+    EXPECT_NEAR(p.force_n / (0.2 * kMassKg), 1.0, 0.015) << p.velocity_mps;
+  }
+}
+
+/// Segments that were never visited stay flat instead of running away.
+TEST(Curve, StaysFlatWhereNothingWasVisitedAndSaysThatItDoesNotKnow) {
+  const Snapshot s = summary_of(*statistics_of({}, 4e-3, 3));
+  ASSERT_TRUE(s.valid);
+  EXPECT_NEAR(s.curve.back().force_n / (0.2 * kMassKg), 1.0, 0.25);
+  EXPECT_TRUE(std::isfinite(s.curve.back().std_n));
+}
+
+TEST(Curve, IsWiderWhereThereAreFewerSamples) {
+  const Snapshot s = summary_of(*statistics_of({}, 10e-3, 4));
+  EXPECT_GT(s.curve[7].std_n, 2.0 * s.curve[2].std_n);
+}
+
+TEST(Summary, FindsLevelStiffnessAndWidth) {
+  const Snapshot s = summary_of(*statistics_of({}, 14e-3, 5));
+  EXPECT_NEAR(s.coulomb_n.value / (0.2 * kMassKg), 1.0, 0.005);
+  EXPECT_NEAR(s.stiffness_npm.value / (kStiffness * kMassKg), 1.0, 0.01);
+  EXPECT_NEAR(s.law_width_mps.value / kTrueWidthMps, 1.0, 0.15);
+  EXPECT_NEAR(s.velocity_rms_mps, 14e-3, 0.2e-3);
+  EXPECT_FALSE(s.std_is_lower_bound);
+}
+
+TEST(Summary, FindsAViscousPartAndNoneWhereThereIsNone) {
+  const Snapshot with = summary_of(*statistics_of({}, 14e-3, 6, 1.5));
+  EXPECT_NEAR(with.viscous_nspm.value / (1.5 * kMassKg), 1.0, 0.06);
+  EXPECT_NEAR(with.coulomb_with_viscous_n.value / (0.2 * kMassKg), 1.0, 0.01);
+  const Snapshot without = summary_of(*statistics_of({}, 14e-3, 7));
+  EXPECT_LT(std::abs(without.viscous_nspm.value), 3.0 * without.viscous_nspm.std);
+}
+
+TEST(Summary, EveryForceScalesWithTheMovingMass) {
+  const auto statistics = statistics_of({}, 14e-3, 8);
+  const Snapshot one = summarise(*statistics, {.moving_mass_kg = 1.0});
+  const Snapshot many = summarise(*statistics, {.moving_mass_kg = 5000.0});
+  const auto expect_scaled = [](double a, double b) { EXPECT_NEAR(b / a, 5000.0, 1e-9); };
+  expect_scaled(one.coulomb_n.value, many.coulomb_n.value);
+  expect_scaled(one.coulomb_n.std, many.coulomb_n.std);
+  expect_scaled(one.stiffness_npm.value, many.stiffness_npm.value);
+  expect_scaled(one.stiffness_npm.std, many.stiffness_npm.std);
+  expect_scaled(one.viscous_nspm.value, many.viscous_nspm.value);
+  expect_scaled(one.curve_force_at_zero_n, many.curve_force_at_zero_n);
+  for (std::size_t i = 0; i < kCurveSegments; ++i) {
+    expect_scaled(one.curve[i].force_n, many.curve[i].force_n);
+    expect_scaled(one.curve[i].std_n, many.curve[i].std_n);
+  }
+  EXPECT_EQ(one.law_width_mps.value, many.law_width_mps.value);
+  EXPECT_EQ(one.nmse, many.nmse);
+}
+
+TEST(Summary, IsNotValidWithoutData) {
+  const auto empty = std::make_unique<Statistics>();
+  empty->header.curve_nodes_mps = kDefaultCurveNodesMps;
+  EXPECT_FALSE(summary_of(*empty).valid);
+  const auto few = statistics_of({}, 14e-3, 9);
+  few->header.entry_count = 3;
+  EXPECT_FALSE(summary_of(*few).valid) << "three blocks do not tell a deviation";
+}
+
+TEST(Summary, CallsDeviationsALowerBoundWhereItSticks) {
+  const auto statistics = statistics_of({}, 14e-3, 10);
+  statistics->header.velocity.sticking = statistics->header.velocity.moving / 2;
+  EXPECT_TRUE(summary_of(*statistics).std_is_lower_bound);
+}
+
+TEST(Summary, TheHeldOutErrorIsTheNoisesShare) {
+  const Snapshot s = summary_of(*statistics_of({}, 14e-3, 11));
+  EXPECT_GE(s.held_out_nmse, s.nmse);
+  // Signal: 0.2^2 less what the smooth sign loses near zero, and (140 * 0.5e-3)^2.
+  EXPECT_NEAR(s.held_out_nmse, kNoise * kNoise / (0.038 + 0.0049 + kNoise * kNoise), 1e-3);
+}
+
+}  // namespace
+}  // namespace dampline

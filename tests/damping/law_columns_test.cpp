@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/damping/law_columns.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dampline/identifier.hpp"
+#include "tests/steps.hpp"
+
+namespace dampline {
+namespace {
+
+const LawColumns law_columns{kDefaultCurveNodesMps};
+
+TEST(LawColumns, BeginWithASmoothSignOfEachWidth) {
+  for (const double v : steps(-0.05, 0.05, 0.37e-3)) {
+    const auto values = law_columns(v);
+    for (std::size_t i = 0; i < kLawWidths; ++i) {
+      EXPECT_NEAR(values[static_cast<int>(i)],
+                  std::erf(0.5 * std::sqrt(std::acos(-1.0)) * v / kLawWidthMps[i]), 3e-6);
+    }
+  }
+}
+
+TEST(LawColumns, EndWithTheRampsOfABrokenLine) {
+  for (const double v : steps(-0.1, 0.1, 0.41e-3)) {
+    const auto values = law_columns(v);
+    double left = 0.0;
+    for (std::size_t i = 0; i < kCurveSegments; ++i) {
+      const double right = i + 1 < kCurveSegments ? kDefaultCurveNodesMps[i] : 1e9;
+      double ramp = 0.0;
+      if (std::abs(v) >= right) {
+        ramp = right - left;
+      } else if (std::abs(v) > left) {
+        ramp = std::abs(v) - left;
+      }
+      EXPECT_NEAR(values[static_cast<int>(kLawWidths + i)], v < 0.0 ? -ramp : ramp, 1e-15);
+      left = kDefaultCurveNodesMps[i];
+    }
+  }
+}
+
+TEST(LawColumns, TheRampsTogetherAreTheVelocity) {
+  for (const double v : {-0.2, -0.039, -0.001, 0.0, 0.0007, 0.012, 0.041, 0.5})
+    EXPECT_NEAR(law_columns(v).tail<static_cast<int>(kCurveSegments)>().sum(), v, 1e-15);
+}
+
+TEST(LawColumns, AreOdd) {
+  for (const double v : steps(0.0, 0.1, 0.37e-3))
+    EXPECT_EQ((law_columns(v) + law_columns(-v)).cwiseAbs().maxCoeff(), 0.0) << v;
+}
+
+TEST(LawColumns, TheWidthsIncrease) {
+  for (std::size_t i = 1; i < kLawWidths; ++i) EXPECT_GT(kLawWidthMps[i], kLawWidthMps[i - 1]);
+}
+
+}  // namespace
+}  // namespace dampline

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "drivers/candump/line.hpp"
+
+namespace dampline::drivers {
+namespace {
+
+struct Parsed {
+  CanFrame frame;
+  std::string interface;
+  std::string expected;  // empty: the line is good
+  std::ptrdiff_t column{0};
+};
+
+Parsed parse(const std::string& line) {
+  Parsed result;
+  result.frame.data.fill(0xEE);  // what another frame left behind
+  CandumpLine parser;
+  const CandumpFault fault = parser.parse(line, result.frame);
+  if (fault.expected != nullptr) {
+    result.expected = fault.expected;
+    result.column = fault.at - line.data();
+    return result;
+  }
+  result.interface = parser.interface_name();
+  return result;
+}
+
+TEST(CandumpLine, ReadsAStandardFrame) {
+  const Parsed line = parse("(1631416514.736052) can0 0D0#A8FF00000000FF01");
+  ASSERT_EQ(line.expected, "");
+  EXPECT_EQ(line.frame.time_ns, 1631416514736052000);
+  EXPECT_EQ(line.interface, "can0");
+  EXPECT_EQ(line.frame.id, 0x0D0U);
+  EXPECT_FALSE(line.frame.extended || line.frame.remote || line.frame.error || line.frame.fd);
+  EXPECT_EQ(line.frame.length, 8);
+  EXPECT_EQ(line.frame.data[0], 0xA8);
+  EXPECT_EQ(line.frame.data[7], 0x01);
+  for (std::size_t i = 8; i < 64; ++i) EXPECT_EQ(line.frame.data[i], 0);
+}
+
+TEST(CandumpLine, ReadsNineDecimals) {
+  EXPECT_EQ(parse("(1631416514.736052123) can0 0D0#").frame.time_ns, 1631416514736052123);
+  EXPECT_EQ(parse("(0.000000001) can0 0D0#").frame.time_ns, 1);  // relative times
+}
+
+TEST(CandumpLine, ReadsTheDirection) {
+  EXPECT_EQ(parse("(1.000000) vcan12 123#11 R").expected, "");
+  EXPECT_EQ(parse("(1.000000) vcan12 123#11 T").frame.length, 1);
+  EXPECT_EQ(parse("(1.000000) vcan12 123#11  ").expected, "");
+  EXPECT_NE(parse("(1.000000) vcan12 123#11 X").expected, "");
+}
+
+TEST(CandumpLine, ReadsExtendedErrorAndRemoteFrames) {
+  const Parsed extended = parse("(1.000000) can0 18FF0001#1122");
+  EXPECT_TRUE(extended.frame.extended);
+  EXPECT_EQ(extended.frame.id, 0x18FF0001U);
+  const Parsed low = parse("(1.000000) can0 00000123#");
+  EXPECT_TRUE(low.frame.extended);
+  EXPECT_EQ(low.frame.id, 0x123U);
+  const Parsed error = parse("(1.000000) can0 20000080#0000000000000000");
+  EXPECT_TRUE(error.frame.error);
+  EXPECT_EQ(error.frame.id, 0x80U);
+  const Parsed remote = parse("(1.000000) can0 123#R");
+  EXPECT_TRUE(remote.frame.remote);
+  EXPECT_EQ(remote.frame.length, 0);
+  EXPECT_EQ(parse("(1.000000) can0 123#R8").frame.length, 8);
+}
+
+TEST(CandumpLine, ReadsCanFd) {
+  const Parsed twelve = parse("(1.000000) can0 123##1000102030405060708090A0B");
+  ASSERT_EQ(twelve.expected, "");
+  EXPECT_TRUE(twelve.frame.fd);
+  EXPECT_EQ(twelve.frame.length, 12);
+  EXPECT_EQ(twelve.frame.data[11], 0x0B);
+  EXPECT_EQ(parse("(1.000000) can0 123##0" + std::string(128, 'F')).frame.length, 64);
+  EXPECT_NE(parse("(1.000000) can0 123##0" + std::string(130, 'F')).expected, "");
+  EXPECT_NE(parse("(1.000000) can0 123##0" + std::string(18, 'F')).expected,
+            "");  // 9 bytes: no such length
+  EXPECT_NE(parse("(1.000000) can0 123##").expected, "");
+}
+
+TEST(CandumpLine, ReadsWhatCanUtilsAllows) {
+  EXPECT_EQ(parse("(1.000000) can0 123#").frame.length, 0);
+  EXPECT_EQ(parse("(1.000000) can0 1aB#fF").frame.data[0], 0xFF);
+  EXPECT_EQ(parse("(1.000000) can0 123#11.22.33").frame.length, 3);
+  EXPECT_EQ(parse("(1.000000) can0 123#1122334455667788_C").frame.length, 8);
+}
+
+struct Bad {
+  const char* line;
+  std::ptrdiff_t column;
+};
+class CandumpLineRefuses : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(CandumpLineRefuses, AndPointsAtTheCharacter) {
+  const Parsed line = parse(GetParam().line);
+  EXPECT_NE(line.expected, "") << GetParam().line;
+  EXPECT_EQ(line.column, GetParam().column) << GetParam().line;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Lines, CandumpLineRefuses,
+    ::testing::Values(
+        Bad{"", 0}, Bad{"(", 1}, Bad{"(1631416514)", 11}, Bad{"(1.00000) can0 123#", 8},
+        Bad{"(1.0000000) can0 123#", 10}, Bad{"(1.000000", 9}, Bad{"(1.000000)", 10},
+        Bad{"(1.000000)can0 123#", 10}, Bad{"(1.000000) can0", 15}, Bad{"(1.000000) can0 ", 16},
+        Bad{"(1.000000) can0 12#", 18}, Bad{"(1.000000) can0 1234#", 20},
+        Bad{"(1.000000) can0 800#", 20}, Bad{"(1.000000) can0 123 11", 19},
+        Bad{"(1.000000) can0 C0000000#", 25}, Bad{"(1.000000) can0 123#1", 20},
+        Bad{"(1.000000) can0 123#112233445566778899", 36}, Bad{"(1.000000) can0 123#1G", 20},
+        Bad{"(1.000000) can0123456789012 123#", 27}, Bad{"(-1.000000) can0 123#", 1},
+        Bad{"(9223372036.000000) can0 123#", 11}, Bad{"(99999999999999.000000) can0 123#", 12},
+        Bad{"(1.000000) c\xC3\xA4n 123#", 12}));
+
+}  // namespace
+}  // namespace dampline::drivers

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "drivers/csv/csv_reader.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "temporary_file.hpp"
+
+namespace dampline::drivers {
+namespace {
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::TemporaryFile;
+
+struct Table {
+  bool opened{false};
+  std::vector<std::vector<double>> rows;
+  hal::RowHealth health;
+  Errc end{};
+  std::string error;
+  std::vector<std::string> ignored;
+};
+
+Table read_all(CsvConfig config, std::string_view text) {
+  const TemporaryFile file{text, ".csv"};
+  config.path = file.path();
+  Table table;
+  auto reader = CsvReader::open(config);
+  table.opened = reader.ok();
+  table.error = reader.error_text();
+  if (reader.ok()) {
+    std::vector<double> some(3 * reader.value()->width() + 1);
+    for (;;) {
+      const auto count = reader.value()->read(some);
+      if (!count.ok()) {
+        table.end = count.error();
+        break;
+      }
+      const auto width = static_cast<std::ptrdiff_t>(reader.value()->width());
+      for (std::size_t i = 0; i < count.value(); ++i) {
+        const auto first = some.begin() + static_cast<std::ptrdiff_t>(i) * width;
+        table.rows.emplace_back(first, first + width);
+      }
+    }
+    table.health = reader.value()->health();
+    table.error = reader.value()->error_text();
+    table.ignored = reader.value()->ignored_columns();
+  }
+  const std::size_t at = table.error.find(file.path());
+  if (at != std::string::npos) table.error.replace(at, file.path().size(), "FILE");
+  return table;
+}
+
+CsvConfig rig() {
+  CsvConfig config;
+  config.required = {"time_s", "deflection_m", "force_n"};
+  return config;
+}
+
+TEST(CsvReader, ReadsColumnsByNameInTheOrderAskedFor) {
+  const Table table =
+      read_all(rig(), "force_n,note,time_s,deflection_m\n1.5,9,0,-2e-3\n2.5,9,0.1,3e-3\n");
+  ASSERT_EQ(table.error, "");
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_THAT(table.rows[0], ElementsAre(0.0, -2e-3, 1.5));
+  EXPECT_THAT(table.rows[1], ElementsAre(0.1, 3e-3, 2.5));
+  EXPECT_THAT(table.ignored, ElementsAre("note"));
+  EXPECT_EQ(table.end, Errc::kEndOfStream);
+  EXPECT_EQ(table.health.rows, 2U);
+  EXPECT_EQ(table.health.line, 3U);
+}
+
+TEST(CsvReader, BearsWhatOtherProgramsWrite) {
+  const Table table =
+      read_all(rig(),
+               "\xEF\xBB\xBF# recorded on a rig\r\n\r\n\"time_s\" , \"deflection_m\",force_n\r\n# "
+               "units\r\n0,+1,\"2\"\r\n 1 , 2,3,\r\n");
+  ASSERT_EQ(table.error, "");
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_THAT(table.rows[0], ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_THAT(table.rows[1], ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_EQ(table.health.ignored, 1U);
+}
+
+TEST(CsvReader, FindsTheSeparator) {
+  EXPECT_THAT(read_all(rig(), "time_s;deflection_m;force_n\n0;0,5;1,25e3\n").rows[0],
+              ElementsAre(0.0, 0.5, 1250.0));
+  EXPECT_THAT(read_all(rig(), "time_s\tdeflection_m\tforce_n\n0\t0.5\t1\n").rows[0],
+              ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(read_all(rig(), "\"a,b;c\",time_s,deflection_m,force_n\n7,0,1,2\n").rows[0],
+              ElementsAre(0.0, 1.0, 2.0));
+}
+
+TEST(CsvReader, TakesColumnsByOtherNames) {
+  CsvConfig config = rig();
+  config.renamed = {{"deflection_m", "x_m"}, {"force_n", "F_N"}, {"time_s", "t_s"}};
+  EXPECT_THAT(read_all(config, "t_s,x_m,F_N\n0,1,2\n").rows[0], ElementsAre(0.0, 1.0, 2.0));
+}
+
+TEST(CsvReader, GivesNanForAnEmptyCellAndForAColumnThatIsOptional) {
+  CsvConfig config = rig();
+  config.optional = {"velocity_mps"};
+  const Table table = read_all(config, "time_s,deflection_m,force_n\n0,,2\n");
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_TRUE(std::isnan(table.rows[0][1]));
+  EXPECT_EQ(table.rows[0][2], 2.0);
+  EXPECT_TRUE(std::isnan(table.rows[0][3]));
+}
+
+TEST(CsvReader, KnowsWhichColumnsTheRecordHas) {
+  const TemporaryFile file{"time_s,velocity_mps\n0,1\n"};
+  auto reader = CsvReader::open(
+      {.path = file.path(), .required = {"time_s"}, .optional = {"velocity_mps", "force_n"}});
+  EXPECT_TRUE(reader.value()->has("velocity_mps"));
+  EXPECT_FALSE(reader.value()->has("force_n"));
+  EXPECT_FALSE(reader.value()->has("other"));
+  EXPECT_THAT(CsvReader::header_of(file.path()).value(), ElementsAre("time_s", "velocity_mps"));
+}
+
+TEST(CsvReader, PassesNanAndInfinityOnAsSuch) {
+  const Table table = read_all(rig(), "time_s,deflection_m,force_n\n0,nan,inf\n1,NaN,-Infinity\n");
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_TRUE(std::isnan(table.rows[0][1]));
+  EXPECT_EQ(table.rows[0][2], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(table.rows[1][2], -std::numeric_limits<double>::infinity());
+}
+
+TEST(CsvReader, NamesTheMissingColumnAndThosePresent) {
+  const Table table = read_all(rig(), "time_s,x_m,force_n\n0,1,2\n");
+  EXPECT_FALSE(table.opened);
+  EXPECT_EQ(table.error,
+            "FILE: found no column \"deflection_m\", expected it among: time_s, x_m, force_n");
+  CsvConfig config = rig();
+  config.renamed = {{"deflection_m", "pos"}};
+  EXPECT_EQ(
+      read_all(config, "time_s,x_m,force_n\n0,1,2\n").error,
+      "FILE: found no column \"pos\" (for deflection_m), expected it among: time_s, x_m, force_n");
+}
+
+TEST(CsvReader, RefusesANameThatIsNotClear) {
+  EXPECT_THAT(read_all(rig(), "time_s,deflection_m,force_n,force_n\n").error,
+              HasSubstr("\"force_n\" stands twice"));
+  CsvConfig config = rig();
+  config.renamed = {{"deflection_m", "x"}, {"force_n", "x"}};
+  EXPECT_THAT(read_all(config, "time_s,x\n").error,
+              HasSubstr("\"x\" is asked for as deflection_m and as force_n"));
+}
+
+TEST(CsvReader, ReportsFileLineAndColumnOfABadRow) {
+  constexpr const char* kHead = "time_s,deflection_m,force_n\n0,1,2\n";
+  const auto error = [&](const char* row) {
+    return read_all(rig(), std::string{kHead} + row + "\n9,1,2\n").error;
+  };
+  EXPECT_EQ(error("1,1.5x,2"), "FILE:3:3: found \"1.5x\", expected a number for deflection_m");
+  EXPECT_EQ(error("1,2"), "FILE:3:4: found 2 cells, expected 3");
+  EXPECT_EQ(error("1,2,3,4"), "FILE:3:8: found 4 cells, expected 3");
+  EXPECT_EQ(error("0,2,3"), "FILE:3:1: found time_s = 0, expected a time after 0");
+  EXPECT_EQ(error("-1,2,3"), "FILE:3:1: found time_s = -1, expected a time after 0");
+  EXPECT_EQ(error(",2,3"), "FILE:3:1: found time_s = nan, expected a time after 0");
+  EXPECT_EQ(error("1,2,1e999"), "FILE:3:5: found \"1e999\", expected a number for force_n");
+  EXPECT_EQ(error("1,--2,3"), "FILE:3:3: found \"--2\", expected a number for deflection_m");
+}
+
+TEST(CsvReader, DeliversTheRowsBeforeABadOneAndStaysStopped) {
+  const TemporaryFile file{"time_s\n0\n1\nx\n3\n"};
+  auto reader = CsvReader::open({.path = file.path(), .required = {"time_s"}});
+  std::array<double, 10> rows{};
+  EXPECT_EQ(reader.value()->read(rows).value(), 2U);
+  EXPECT_EQ(reader.value()->read(rows).error(), Errc::kMalformed);
+  EXPECT_EQ(reader.value()->read(rows).error(), Errc::kMalformed);
+}
+
+TEST(CsvReader, CountsBadRowsWhenAskedTo) {
+  CsvConfig config = rig();
+  config.skip_bad_lines = true;
+  const Table table =
+      read_all(config, "time_s,deflection_m,force_n\n0,1,2\nx\n1,1\n0,3,3\n2,3,4\n");
+  EXPECT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.health.malformed, 3U);
+  EXPECT_EQ(table.end, Errc::kEndOfStream);
+}
+
+TEST(CsvReader, DropsALastLineWithoutItsEndAndSaysSo) {
+  const Table table = read_all(rig(), "time_s,deflection_m,force_n\n0,1,2\n1,1,22");
+  EXPECT_EQ(table.rows.size(), 1U);
+  EXPECT_TRUE(table.health.truncated);
+  EXPECT_FALSE(read_all(rig(), "time_s,deflection_m,force_n\n0,1,2\n").health.truncated);
+}
+
+TEST(CsvReader, RefusesFilesOfAnotherKind) {
+  EXPECT_THAT(read_all(rig(), "").error,
+              HasSubstr("FILE: found nothing: it is empty, expected a header line"));
+  EXPECT_THAT(read_all(rig(), "# only\n\n").error, HasSubstr("it is empty"));
+  EXPECT_THAT(read_all(rig(), "(1631416514.736052) can0 0D0#A8FF\n").error,
+              HasSubstr("found a candump log beginning"));
+  EXPECT_THAT(read_all(rig(), std::string_view{"\x7F"
+                                               "ELF\x02\0\0\n,\n",
+                                               10})
+                  .error,
+              HasSubstr("found binary data"));
+  EXPECT_THAT(read_all(rig(), "0,1,2\n1,1,2\n").error, HasSubstr("found numbers without a header"));
+  EXPECT_THAT(read_all(rig(), "time_s,deflection_m,force_n\n").error,
+              HasSubstr("a header but no row"));
+  EXPECT_THAT(CsvReader::open({.path = "/nonexistent.csv"}).error_text(),
+              HasSubstr("/nonexistent.csv: cannot be opened"));
+}
+
+TEST(CsvReader, BearsRandomCorruption) {
+  std::string good = "time_s,deflection_m,force_n\n";
+  for (int i = 0; i < 1000; ++i) good += fmt::format("{},{},{}\n", i * 0.01, i * 1e-5, 100 - i);
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    std::mt19937 random{seed};
+    std::string text = good;
+    for (std::size_t i = 28; i < text.size(); ++i) {
+      if (random() % 100 < (seed % 2 == 0 ? 10 : 1)) text[i] = static_cast<char>(random());
+    }
+    CsvConfig config = rig();
+    config.skip_bad_lines = true;
+    const Table table = read_all(config, text);
+    const auto lines = static_cast<std::uint64_t>(std::count(text.begin() + 28, text.end(), '\n'));
+    EXPECT_EQ(table.health.rows + table.health.malformed + table.health.ignored, lines) << seed;
+    for (std::size_t i = 1; i < table.rows.size(); ++i)
+      EXPECT_GT(table.rows[i][0], table.rows[i - 1][0]);
+  }
+}
+
+TEST(CsvReader, ReadsTheMeasuredRigRecords) {
+  const auto path = testing::shared_data() / "emps" / "emps_train.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "measured data not found: " << path;
+  auto reader = CsvReader::open({.path = path.string(),
+                                 .required = {"time_s", "deflection_m"},
+                                 .renamed = {{"time_s", "t"}, {"deflection_m", "qm"}}});
+  ASSERT_TRUE(reader.ok()) << reader.error_text();
+  std::vector<double> rows(2 * 30000);
+  EXPECT_EQ(reader.value()->read(rows).value(), 24841U);
+  EXPECT_EQ(reader.value()->read(rows).error(), Errc::kEndOfStream);
+  EXPECT_EQ(rows[2], 0.001);
+  EXPECT_EQ(rows[3], 1.43e-05);
+}
+
+}  // namespace
+}  // namespace dampline::drivers

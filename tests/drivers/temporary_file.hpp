@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace dampline::testing {
+
+/// A file with the given content for the time of one test.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::string_view content, const std::string& suffix = ".txt") {
+    static int number = 0;
+    path_ =
+        std::filesystem::temp_directory_path() /
+        ("dampline_test_" + std::to_string(::getpid()) + "_" + std::to_string(number++) + suffix);
+    std::ofstream{path_, std::ios::binary} << content;
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  [[nodiscard]] std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The folder of measured records: DAMPLINE_SHARED_DATA, or beside the project.
+inline std::filesystem::path shared_data() {
+  const char* set = std::getenv("DAMPLINE_SHARED_DATA");
+  return set != nullptr ? std::filesystem::path{set}
+                        : std::filesystem::path{DAMPLINE_SOURCE_DIR} / ".." / "shared" / "data";
+}
+
+inline std::string content_of(const std::filesystem::path& path) {
+  std::ifstream in{path, std::ios::binary};
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+}  // namespace dampline::testing

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/estimate/information.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "dampline/estimate/cholesky.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr int kUnknowns = 6;
+using Factor = Information<kUnknowns + 1>;
+
+Eigen::MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
+  std::mt19937_64 random{seed};
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd out(rows, columns);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) out(i, j) = normal(random);
+  }
+  return out;
+}
+
+Factor factor_of(const Eigen::MatrixXd& ab) {
+  Factor out;
+  for (int i = 0; i < ab.rows(); ++i) out.absorb(ab.row(i).transpose());
+  return out;
+}
+
+Eigen::VectorXd dense_solution(const Eigen::MatrixXd& ab) {
+  return ab.leftCols(kUnknowns).colPivHouseholderQr().solve(ab.col(kUnknowns));
+}
+
+TEST(Information, SolvesAsEigensDenseQr) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, seed);
+    Factor::Vector theta;
+    ASSERT_TRUE(factor_of(ab).solve(theta));
+    EXPECT_LT((theta - dense_solution(ab)).norm() / theta.norm(), 1e-12);
+  }
+}
+
+TEST(Information, SolvesWhereTheNormalEquationsCouldNot) {
+  Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 3);
+  ab.col(1) = ab.col(0) + 1e-7 * ab.col(1);  // condition 1e7: its square leaves two digits
+  ab.col(kUnknowns) = ab.leftCols(kUnknowns) * Eigen::VectorXd::Ones(kUnknowns);
+  Factor::Vector theta;
+  ASSERT_TRUE(factor_of(ab).solve(theta));
+  EXPECT_LT((theta - Factor::Vector::Ones()).norm(), 1e-7);
+}
+
+TEST(Information, KeepsTheNormalEquations) {
+  const Eigen::MatrixXd ab = random_matrix(50, kUnknowns + 1, 4);
+  const Eigen::MatrixXd gram = ab.transpose() * ab;
+  EXPECT_LT((factor_of(ab).gram() - gram).norm() / gram.norm(), 1e-14);
+}
+
+TEST(Information, TwoHalvesMergeToTheWhole) {
+  const Eigen::MatrixXd ab = random_matrix(50, kUnknowns + 1, 5);
+  Factor merged = factor_of(ab.topRows(20));
+  merged.merge(factor_of(ab.bottomRows(30)));
+  Factor::Vector theta;
+  ASSERT_TRUE(merged.solve(theta));
+  EXPECT_LT((theta - dense_solution(ab)).norm() / theta.norm(), 1e-12);
+  const Eigen::MatrixXd gram = ab.transpose() * ab;
+  EXPECT_LT((merged.gram() - gram).norm() / gram.norm(), 1e-14);
+}
+
+TEST(Information, MergesRowByRowAsAtOnce) {
+  const Eigen::MatrixXd ab = random_matrix(30, kUnknowns + 1, 6);
+  Factor whole = factor_of(ab.topRows(10));
+  Factor by_rows = whole;
+  const Factor other = factor_of(ab.bottomRows(20));
+  whole.merge(other);
+  for (int i = 0; i <= kUnknowns; ++i) by_rows.absorb_row_of(other, i);
+  EXPECT_EQ(whole.packed(), by_rows.packed());
+}
+
+TEST(Information, ScaleForgetsByTheSquareOfItsFactor) {
+  const Eigen::MatrixXd old = random_matrix(30, kUnknowns + 1, 7);
+  const Eigen::MatrixXd fresh = random_matrix(30, kUnknowns + 1, 8);
+  Factor factor = factor_of(old);
+  factor.scale(0.5);
+  factor.merge(factor_of(fresh));
+  Eigen::MatrixXd weighted(60, kUnknowns + 1);
+  weighted << 0.5 * old, fresh;
+  Factor::Vector theta;
+  ASSERT_TRUE(factor.solve(theta));
+  EXPECT_LT((theta - dense_solution(weighted)).norm() / theta.norm(), 1e-12);
+}
+
+TEST(Information, InvertsTheNormalMatrix) {
+  const Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 9);
+  const Eigen::MatrixXd truth =
+      (ab.leftCols(kUnknowns).transpose() * ab.leftCols(kUnknowns)).inverse();
+  EXPECT_LT((factor_of(ab).inverse() - truth).norm() / truth.norm(), 1e-12);
+}
+
+TEST(Information, KnowsTheNormOfWhatIsLeft) {
+  const Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 10);
+  const double truth = (ab.leftCols(kUnknowns) * dense_solution(ab) - ab.col(kUnknowns)).norm();
+  EXPECT_NEAR(factor_of(ab).residual_norm(), truth, 1e-12 * truth);
+  for (int j = 0; j <= kUnknowns; ++j)
+    EXPECT_NEAR(factor_of(ab).column_norm(j), ab.col(j).norm(), 1e-12);
+}
+
+TEST(Information, SaysWhenTheDataDoNotDetermineAnUnknown) {
+  Factor::Vector theta;
+  EXPECT_FALSE(Factor{}.solve(theta));
+  Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 11);
+  EXPECT_FALSE(factor_of(ab.topRows(kUnknowns - 1)).solve(theta)) << "fewer rows than unknowns";
+  ab.col(4) = 2.0 * ab.col(1) - ab.col(2);
+  EXPECT_FALSE(factor_of(ab).solve(theta)) << "dependent columns";
+  ab.col(4).setZero();
+  EXPECT_FALSE(factor_of(ab).solve(theta)) << "a column of zeros";
+}
+
+TEST(Information, NeverTakesNotANumberForASolution) {
+  Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 12);
+  ab(7, 3) = std::nan("");
+  Factor::Vector theta;
+  EXPECT_FALSE(factor_of(ab).solve(theta));
+}
+
+TEST(Information, MapsColumnsOntoOthers) {
+  const Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 13);
+  Eigen::Matrix<double, kUnknowns + 1, 3> map = random_matrix(kUnknowns + 1, 3, 14);
+  Information<3> mapped;
+  factor_of(ab).add_mapped(map, 4.0, mapped);
+  const Eigen::MatrixXd truth = 4.0 * (ab * map).transpose() * (ab * map);
+  EXPECT_LT((mapped.gram() - truth).norm() / truth.norm(), 1e-13);
+}
+
+TEST(SolveCholesky, SolvesAsEigen) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::MatrixXd r = random_matrix(20, 5, seed);
+    const Eigen::Matrix<double, 5, 5> a = r.transpose() * r;
+    const Eigen::Matrix<double, 5, 1> b = random_matrix(5, 1, seed + 100);
+    const Eigen::Matrix<double, 5, 1> truth = a.fullPivLu().solve(b);
+    EXPECT_LT((solve_cholesky<5>(a, b) - truth).norm() / truth.norm(), 1e-12);
+  }
+}
+
+TEST(SolveCholesky, GivesNotANumberForWhatIsNotDetermined) {
+  Eigen::Matrix<double, 3, 3> a = Eigen::Matrix<double, 3, 3>::Identity();
+  a(2, 2) = -1.0;
+  const Eigen::Matrix<double, 3, 1> x = solve_cholesky<3>(a, Eigen::Matrix<double, 3, 1>::Ones());
+  EXPECT_TRUE(std::isnan(x[2]));
+}
+
+}  // namespace
+}  // namespace dampline

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include "tests/identifier/record.hpp"
+
+namespace dampline {
+namespace {
+
+TEST(Identifier, FitsInHalfAMebibyte) {
+  std::cout << "sizeof(Identifier) = " << sizeof(Identifier) << " bytes\n";
+  EXPECT_LT(sizeof(Identifier), 512U * 1024U);
+}
+
+TEST(Identifier, GivesMotionOfAnEarlierSampleAtAConstantLag) {
+  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  std::int64_t lag = -1;
+  int motions = 0;
+  std::int64_t last_tick = -1;
+  for (const Sample& s : laden_record()) {
+    const UpdateResult result = identifier->update(s);
+    if (!result.has_motion) continue;
+    ++motions;
+    if (lag < 0) lag = s.tick - result.motion.tick;
+    ASSERT_EQ(s.tick - result.motion.tick, lag);
+    if (last_tick >= 0) {
+      ASSERT_EQ(result.motion.tick, last_tick + 1);
+    }
+    last_tick = result.motion.tick;
+  }
+  EXPECT_GT(motions, 27000);
+  EXPECT_NEAR(static_cast<double>(lag) / 300.0, identifier->motion_latency_s(), 1e-9);
+  EXPECT_LT(identifier->motion_latency_s(), 5.0);
+  EXPECT_LT(identifier->velocity_latency_s(), 3.0);
+}
+
+TEST(Identifier, KnowsARowsLatency) {
+  // The row whose centre lies in the last stride of block 0 is counted when its reach is complete.
+  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  std::int64_t closed_at = -1;
+  for (const Sample& s : laden_record()) {
+    if (identifier->update(s).block_closed) {
+      closed_at = s.tick;
+      break;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(closed_at - 600) / 300.0, identifier->row_latency_s(),
+              2.0 / 300.0);
+  EXPECT_LT(identifier->row_latency_s(), 3.5);
+}
+
+TEST(Identifier, PausesAtAStandstill) {
+  auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
+  config.speed.standstill_start_s = 60.0;
+  config.speed.standstill_end_s = 90.0;
+  const Snapshot s = identify(simulate(config, 150.0)).snapshot;
+  EXPECT_GE(s.counts.blocks_still, 10U);
+  EXPECT_GT(s.counts.rows_still, 0U);
+  EXPECT_EQ(s.counts.blocks_excluded, 0U);
+  EXPECT_NEAR(s.coulomb_n.value / kLadenCoulombN, 1.0, 0.01);
+  EXPECT_NEAR(s.stiffness_npm.value / kLadenStiffnessNpm, 1.0, 0.03);
+  EXPECT_LT(s.excitation, 0.95);
+}
+
+TEST(Identifier, SaysNothingOfACarThatNeverMoved) {
+  auto config = sim::reference_run(sim::Load::kLaden, 80.0, 7);
+  config.speed.standstill_start_s = 0.0;
+  config.speed.standstill_end_s = 1000.0;
+  auto record = simulate(config, 60.0);
+  const Snapshot s = identify(record).snapshot;
+  EXPECT_FALSE(s.valid);
+  EXPECT_EQ(s.counts.rows, 0U);
+}
+
+TEST(Identifier, SaysNothingOfTooShortARecord) {
+  const std::vector<Sample> record(laden_record().begin(), laden_record().begin() + 2000);
+  EXPECT_FALSE(identify(record).snapshot.valid);
+}
+
+TEST(Identifier, ChoosesTheCornerByTheNoise) {
+  const auto corner_of = [](double noise_mps2) {
+    auto config = sim::reference_run(sim::Load::kLaden, 80.0, 12);
+    config.sensors.noise_mps2 = noise_mps2;
+    const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+    for (const Sample& s : simulate(config, 10.0)) identifier->update(s);
+    const auto statistics = std::make_unique<Statistics>();
+    identifier->export_statistics(*statistics);
+    return statistics->header.velocity_corner_hz;
+  };
+  EXPECT_EQ(corner_of(0.02), 0.7);
+  EXPECT_EQ(corner_of(0.1), 1.0);
+}
+
+/// Friction rises by 30 % in the middle: who forgets knows only the second half.
+TEST(Identifier, AWindowForgetsWhatIsOlder) {
+  auto config = sim::reference_run(sim::Load::kLaden, 80.0, 21);
+  auto record = simulate(config, 80.0);
+  config.truck.friction_scale = 1.3;
+  for (Sample s : simulate(config, 80.0)) {
+    s.tick += 80 * 300 + 600;
+    record.push_back(s);
+  }
+  const double second_n = 1.3 * kLadenCoulombN;
+  const double infinite_n = identify(record).snapshot.coulomb_n.value;
+  EXPECT_GT(infinite_n, 1.08 * kLadenCoulombN);
+  EXPECT_LT(infinite_n, 0.95 * second_n);
+  const Snapshot window = identify(record, {.memory = Memory::kWindow, .memory_s = 60.0}).snapshot;
+  EXPECT_NEAR(window.coulomb_n.value / second_n, 1.0, 0.015);
+  EXPECT_EQ(window.blocks_in_estimate, 30U);
+  const Snapshot forgetting =
+      identify(record, {.memory = Memory::kForgetting, .memory_s = 15.0}).snapshot;
+  EXPECT_NEAR(forgetting.coulomb_n.value / second_n, 1.0, 0.02);
+}
+
+TEST(Identifier, RefusesEachSettingThatIsOutOfRange) {
+  const auto refused = [](const auto& change) {
+    IdentifierConfig config;
+    change(config);
+    const auto result = Identifier::check(config);
+    return !result.ok() && result.error() == Errc::kInvalidConfig;
+  };
+  using C = IdentifierConfig;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(refused([](C&) {})) << "the defaults are in range";
+  EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 149.9; }));
+  EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 400.1; }));
+  EXPECT_TRUE(refused([&](C& c) { c.sample_rate_hz = nan; }));
+  EXPECT_TRUE(refused([](C& c) { c.moving_mass_kg = 0.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.moving_mass_kg = -1.0; }));
+  EXPECT_TRUE(refused([&](C& c) { c.moving_mass_kg = nan; }));
+  EXPECT_TRUE(refused([](C& c) { c.velocity_corner_hz = 0.8; }));
+  EXPECT_TRUE(refused([&](C& c) { c.velocity_corner_hz = nan; }));
+  EXPECT_TRUE(refused([](C& c) { c.curve_nodes_mps[0] = 0.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.curve_nodes_mps[4] = c.curve_nodes_mps[3]; }));
+  EXPECT_TRUE(refused([&](C& c) { c.curve_nodes_mps[2] = nan; }));
+  EXPECT_TRUE(refused([](C& c) { c.curve_nodes_mps[7] = 11.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.screen.stuck_s = 0.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.screen.stuck_s = 10.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.anti_alias.corner_hz = -1.0; }));
+  EXPECT_TRUE(refused([&](C& c) { c.anti_alias.corner_hz = nan; }));
+  EXPECT_TRUE(refused([](C& c) { c.anti_alias.order = 0; }));
+  EXPECT_TRUE(refused([](C& c) { c.anti_alias.order = 9; }));
+  EXPECT_TRUE(refused([](C& c) { c.memory = Memory::kWindow; })) << "a window of no length";
+  EXPECT_TRUE(refused([](C& c) {
+    c.memory = Memory::kForgetting;
+    c.memory_s = 1.0;
+  }));
+  EXPECT_TRUE(refused([&](C& c) {
+    c.memory = Memory::kWindow;
+    c.memory_s = nan;
+  }));
+}
+
+TEST(Identifier, RefusesAnInfiniteMassOrMemory) {
+  IdentifierConfig mass;
+  mass.moving_mass_kg = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(Identifier::check(mass).ok());
+  for (const Memory memory : {Memory::kWindow, Memory::kForgetting}) {
+    IdentifierConfig config;
+    config.memory = memory;
+    config.memory_s = std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(Identifier::check(config).ok());
+  }
+}
+
+}  // namespace
+}  // namespace dampline

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "dampline/motion/anti_alias.hpp"
+#include "tests/steps.hpp"
+
+namespace dampline {
+namespace {
+
+double gain(const VelocityLift& lift, double relative) {
+  double sum = 0.0;
+  for (int k = -VelocityLift::kHalf; k <= VelocityLift::kHalf; ++k) {
+    sum += lift.taps()[static_cast<std::size_t>(k + VelocityLift::kHalf)] *
+           std::cos(2.0 * std::numbers::pi * relative * k);
+  }
+  return sum;
+}
+
+TEST(VelocityLift, DoesNothingWhereNoFilterIsKnown) {
+  const VelocityLift lift{{.corner_hz = 0.0}, 300.0};
+  for (int k = -VelocityLift::kHalf; k <= VelocityLift::kHalf; ++k)
+    EXPECT_EQ(lift.taps()[static_cast<std::size_t>(k + VelocityLift::kHalf)], k == 0 ? 1.0 : 0.0);
+}
+
+TEST(VelocityLift, LeavesZeroFrequencyAlone) {
+  for (const double corner_hz : {50.0, 80.0, 100.0, 120.0, 140.0}) {
+    const VelocityLift lift{{.corner_hz = corner_hz}, 300.0};
+    EXPECT_NEAR(gain(lift, 0.0), 1.0, 1e-6) << corner_hz;
+  }
+}
+
+TEST(VelocityLift, IsSymmetric) {
+  const VelocityLift lift{{}, 300.0};
+  for (std::size_t k = 0; k < lift.taps().size(); ++k)
+    EXPECT_EQ(lift.taps()[k], lift.taps()[lift.taps().size() - 1 - k]);
+}
+
+// The share itself is tuned on simulated records; that it is one share at all frequencies, corners
+// and orders is what the filter is for.
+TEST(VelocityLift, RaisesByOneShareOfTheButterworthLossUpToTheCorner) {
+  const auto loss_db = [](double relative, int order) {
+    return 10.0 * std::log10(1.0 + std::pow(relative, 2 * order));
+  };
+  const VelocityLift reference{{.corner_hz = 100.0, .order = 4}, 300.0};
+  const double share = 20.0 * std::log10(gain(reference, 0.3)) / loss_db(0.9, 4);
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.6);
+  for (const int order : {2, 4, 6}) {
+    for (const double corner_hz : {80.0, 100.0, 115.0}) {
+      const VelocityLift lift{{.corner_hz = corner_hz, .order = order}, 300.0};
+      for (const double f_hz : steps(0.0, 0.9 * corner_hz, 5.0)) {
+        EXPECT_NEAR(20.0 * std::log10(gain(lift, f_hz / 300.0)),
+                    share * loss_db(f_hz / corner_hz, order), 0.15)
+            << f_hz << " of " << corner_hz << " Hz, order " << order;
+      }
+    }
+  }
+}
+
+TEST(VelocityLift, DoesNotAmplifyWhatLiesBeyondTheEdge) {
+  const VelocityLift lift{{}, 300.0};
+  for (const double f_hz : steps(0.0, 150.0, 1.0)) EXPECT_LT(gain(lift, f_hz / 300.0), 1.3);
+  EXPECT_LT(std::abs(gain(lift, 0.5)), 0.05);
+}
+
+}  // namespace
+}  // namespace dampline

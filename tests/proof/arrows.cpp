@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "tests/proof/arrows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace dampline::proof {
+namespace {
+
+/// Headers of std that neither allocate nor throw nor ask the system for anything.
+constexpr std::array<std::string_view, 20> kCoreStd{
+    "algorithm", "array",    "bit",     "cfloat",  "climits",     "cmath",  "complex",
+    "concepts",  "cstddef",  "cstdint", "cstdlib", "cstring",     "limits", "numbers",
+    "numeric",   "optional", "span",    "tuple",   "type_traits", "utility"};
+
+struct Room {
+  std::string_view name;
+  std::vector<std::string_view> may_include;  ///< beginnings of #include names
+  bool any_library;                           ///< names of no room are allowed, too
+};
+
+const std::vector<Room>& rooms() {
+  static const std::vector<Room> kRooms{
+      {"firmware_core/", {"dampline/", "Eigen/"}, false},
+      {"hal/", {"dampline/", "hal/"}, true},
+      {"drivers/", {"dampline/", "hal/", "drivers/"}, true},
+      {"sim_hw/", {"dampline/", "hal/", "sim_hw/"}, true},
+      {"app/", {"dampline/", "hal/", "drivers/", "sim_hw/", "app/"}, true}};
+  return kRooms;
+}
+
+bool is_ours(std::string_view include) {
+  constexpr std::array<std::string_view, 8> kOurs{
+      "dampline/", "hal/", "drivers/", "sim_hw/", "app/", "tests/", "bench/", "firmware_core/"};
+  return include.starts_with('.') || std::any_of(kOurs.begin(), kOurs.end(), [&](auto ours) {
+           return include.starts_with(ours);
+         });
+}
+
+bool is_allowed(const Room& room, std::string_view include) {
+  if (std::any_of(room.may_include.begin(), room.may_include.end(),
+                  [&](auto allowed) { return include.starts_with(allowed); })) {
+    return true;
+  }
+  if (room.any_library) return !is_ours(include);
+  return std::find(kCoreStd.begin(), kCoreStd.end(), include) != kCoreStd.end();
+}
+
+}  // namespace
+
+std::vector<std::string> wrong_arrows(const std::vector<SourceFile>& files) {
+  std::vector<std::string> wrong;
+  for (const SourceFile& file : files) {
+    const auto room = std::find_if(rooms().begin(), rooms().end(), [&](const Room& candidate) {
+      return file.path.starts_with(candidate.name);
+    });
+    if (room == rooms().end()) continue;
+    for (const std::string& include : includes(file.text)) {
+      if (!is_allowed(*room, include)) wrong.push_back(file.path + " includes " + include);
+    }
+  }
+  return wrong;
+}
+
+}  // namespace dampline::proof

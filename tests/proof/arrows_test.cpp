@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "tests/proof/arrows.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dampline::proof {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const std::vector<std::string> kRooms{"firmware_core", "hal", "drivers", "sim_hw", "app"};
+
+TEST(Arrows, PointFromTheApplicationToTheCoreInTheSourceTree) {
+  const std::vector<SourceFile> files = read_sources(kRooms);
+  ASSERT_THAT(files, Not(IsEmpty()));
+  EXPECT_THAT(wrong_arrows(files), IsEmpty());
+}
+
+TEST(Arrows, AreReportedWhereTheyPointTheWrongWay) {
+  const std::vector<SourceFile> files{
+      {"firmware_core/dampline/a.hpp", "#include <Eigen/Core>\n#include <vector>\n"},
+      {"firmware_core/dampline/b.cpp", "  #  include \"hal/frame_source.hpp\"\n"},
+      {"hal/clock.hpp", "#include \"drivers/csv.hpp\"\n#include <chrono>\n"},
+      {"sim_hw/truck.cpp", "#include \"drivers/csv.hpp\"\n#include \"../app/main.hpp\"\n"},
+      {"drivers/csv.cpp", "#include \"sim_hw/truck.hpp\"\n#include \"hal/frame_source.hpp\"\n"},
+      {"app/main.cpp", "#include \"drivers/csv.hpp\"\n#include \"tests/x.hpp\"\n"}};
+  EXPECT_THAT(wrong_arrows(files),
+              ElementsAre("firmware_core/dampline/a.hpp includes vector",
+                          "firmware_core/dampline/b.cpp includes hal/frame_source.hpp",
+                          "hal/clock.hpp includes drivers/csv.hpp",
+                          "sim_hw/truck.cpp includes drivers/csv.hpp",
+                          "sim_hw/truck.cpp includes ../app/main.hpp",
+                          "drivers/csv.cpp includes sim_hw/truck.hpp",
+                          "app/main.cpp includes tests/x.hpp"));
+}
+
+}  // namespace
+}  // namespace dampline::proof
