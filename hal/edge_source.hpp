@@ -14,6 +14,8 @@ struct Edge {
   std::int64_t time_ns{0};  ///< run time, from the kernel's stamp
   std::uint8_t line{0};     ///< index among the lines that were asked for
   bool rising{false};       ///< inactive to active
+  bool impossible{false};   ///< the edge before had this direction too, though both are watched
+  std::uint32_t lost_before{0};  ///< edges of this line known to be lost just before
 };
 
 /// Monotone counters.
