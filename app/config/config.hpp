@@ -22,6 +22,7 @@ struct CanConfig {
   std::array<std::string, kChannels> accel{};    ///< indexed by Channel; empty: the project's own
   std::array<std::string, kChannels> counter{};  ///< empty: found in the accel's message by name
   std::string interface;                         ///< empty: every interface of the log
+  int receive_buffer_kib{4096};                  ///< of a live interface's socket
 };
 
 /// Anti-aliasing filter of the sensors: a Butterworth low-pass, the same in every channel.
@@ -62,12 +63,29 @@ struct EstimateConfig {
   double time_constant_s{600.0};
 };
 
+/// Recording of a live run.
+struct BlackboxSettings {
+  int rotate_mib{64};       ///< a new file beyond this size
+  double rotate_s{3600.0};  ///< and after this time
+  int keep_mib{0};          ///< the oldest files go beyond this size of all; 0: none goes
+  double sync_s{1.0};       ///< at most so much is lost with the power
+};
+
+/// Digital lines of a live run.
+struct GpioConfig {
+  std::string chip;                ///< "gpiochip0"; empty: no lines are used
+  std::vector<std::string> edges;  ///< "pulse:3", "marker:4:active_low", "wheel:5"
+  std::string lamp;                ///< "7" or "7:active_low"; empty: no lamp
+};
+
 /// Everything a person can set, with defaults that work.
 struct Config {
   CarConfig car;
   InputConfig input;
   ModelConfig model;
   EstimateConfig estimate;
+  BlackboxSettings blackbox;
+  GpioConfig gpio;
 };
 
 /// Reads a TOML file over the defaults. Relative paths in it become relative to its folder.

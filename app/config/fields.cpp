@@ -37,6 +37,8 @@ void add_can(CanConfig& can, Fields& out) {
                    TextField{&can.counter[c], {}}});
   out.push_back({"input.can", "interface", "only frames of this one; empty: all",
                  TextField{&can.interface, {}}});
+  out.push_back({"input.can", "receive_buffer_kib", "of a live interface's socket",
+                 IntegerField{&can.receive_buffer_kib, {4.0, 1048576.0}}});
 }
 
 void add_csv(InputConfig& input, Fields& out) {
@@ -91,6 +93,26 @@ void add_estimate(EstimateConfig& estimate, Fields& out) {
                  NumberField{&estimate.time_constant_s, {10.0, 1e7}}});
 }
 
+void add_blackbox(BlackboxSettings& blackbox, Fields& out) {
+  out.push_back({"blackbox", "rotate_mib", "a live recording begins a new file beyond this size",
+                 IntegerField{&blackbox.rotate_mib, {1.0, 65536.0}}});
+  out.push_back(
+      {"blackbox", "rotate_s", "and after this time", NumberField{&blackbox.rotate_s, {1.0, 1e7}}});
+  out.push_back({"blackbox", "keep_mib", "the oldest files go beyond this size of all; 0: none",
+                 IntegerField{&blackbox.keep_mib, {0.0, 1e9}}});
+  out.push_back({"blackbox", "sync_s", "at most so much is lost with the power",
+                 NumberField{&blackbox.sync_s, {0.1, 3600.0}}});
+}
+
+void add_gpio(GpioConfig& gpio, Fields& out) {
+  out.push_back(
+      {"gpio", "chip", "gpiochip0, ...; empty: no lines are used", TextField{&gpio.chip, {}}});
+  out.push_back({"gpio", "edges", "pulse:LINE, marker:LINE or wheel:LINE, with :active_low",
+                 TextListField{&gpio.edges, {}}});
+  out.push_back({"gpio", "lamp", "line of the status lamp, LINE or LINE:active_low; empty: none",
+                 TextField{&gpio.lamp, {}}});
+}
+
 }  // namespace
 
 std::vector<Field> fields(Config& config) {
@@ -99,6 +121,8 @@ std::vector<Field> fields(Config& config) {
   add_input(config.input, out);
   add_model(config.model, out);
   add_estimate(config.estimate, out);
+  add_blackbox(config.blackbox, out);
+  add_gpio(config.gpio, out);
   return out;
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "app/error.hpp"
 #include "app/identify/can_channels.hpp"
+#include "app/identify/event_list.hpp"
+#include "app/identify/frame_counts.hpp"
 #include "app/identify/sample_feed.hpp"
 #include "drivers/candump/candump_source.hpp"
 
@@ -33,6 +34,8 @@ class CanFeed final : public SampleFeed {
       assembler_->push(frames_[i]);
       take_ready(out);
     }
+    hal::Event event;
+    while (source_->next_event(event)) events_.add(event);
     if (count.ok()) return true;
     assembler_->flush();
     take_ready(out);
@@ -50,13 +53,21 @@ class CanFeed final : public SampleFeed {
     if (dbc_.empty()) return {};
     return {describe_input(dbc_, "dbc")};
   }
-  [[nodiscard]] std::string explain_emptiness() const override;
-  void describe(RunResult& result) const override;
+  [[nodiscard]] std::string explain_emptiness() const override {
+    return explain_no_sample(source_->health(), assembler_->counts(), wanted_);
+  }
+  void describe(RunResult& result) const override {
+    describe_frames(source_->health(), assembler_->counts(), result);
+    events_.describe(first_time_ns_.value_or(0), result);
+  }
 
  private:
   void take_ready(std::vector<Sample>& out) {
     Sample sample;
-    while (assembler_->pop(sample)) out.push_back(sample);
+    while (assembler_->pop(sample)) {
+      if (!first_time_ns_) first_time_ns_ = sample.time_ns;
+      out.push_back(sample);
+    }
   }
 
   std::string dbc_;
@@ -64,39 +75,9 @@ class CanFeed final : public SampleFeed {
   std::array<ChannelConfig, kChannels> wanted_;
   std::unique_ptr<SampleAssembler> assembler_;
   std::array<CanFrame, kBatch> frames_{};
+  EventList events_;
+  std::optional<std::int64_t> first_time_ns_;
 };
-
-std::string CanFeed::explain_emptiness() const {
-  const AssemblerCounts counts = assembler_->counts();
-  std::string channels;
-  for (std::size_t c = 0; c < kChannels; ++c)
-    channels +=
-        fmt::format("{}0x{:X}: {}", c == 0 ? "" : ", ", wanted_[c].id, counts.channels[c].readings);
-  return fmt::format(
-      "of {} frames ({} malformed lines skipped), {} had other identifiers than [input."
-      "can] names; readings by identifier {}; {} instants lacked a channel",
-      counts.frames, source_->health().malformed, counts.foreign, channels, counts.incomplete);
-}
-
-void CanFeed::describe(RunResult& result) const {
-  const hal::SourceHealth health = source_->health();
-  const AssemblerCounts counts = assembler_->counts();
-  result.counts.insert(result.counts.end(), {{"frames", health.frames},
-                                             {"frames_foreign", counts.foreign},
-                                             {"frames_dropped", health.dropped},
-                                             {"frames_reordered", health.reordered},
-                                             {"lines_malformed", health.malformed},
-                                             {"lines_ignored", health.ignored},
-                                             {"incomplete", counts.incomplete},
-                                             {"restarts", counts.restarts}});
-  if (health.truncated)
-    result.warnings.emplace_back(
-        "The log was cut off in the middle of its last line; what is before that "
-        "line was used.");
-  if (health.malformed > 0)
-    result.warnings.push_back(
-        fmt::format("{} malformed lines were skipped, as asked for.", health.malformed));
-}
 
 }  // namespace
 

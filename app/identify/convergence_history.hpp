@@ -3,19 +3,24 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "app/identify/touched.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {
 
 /// How the level and the stiffness developed, in at most kMost rows however long the record is:
-/// when they are full, every other row goes and the interval doubles.
+/// when they are full, every other row goes and the interval doubles. add() does not allocate.
 class ConvergenceHistory {
  public:
   static constexpr std::size_t kMost = 240;
 
   /// `interval` ticks between rows at first.
   ConvergenceHistory(std::int64_t interval, std::int64_t first_tick)
-      : interval_{interval}, next_{first_tick + interval} {}
+      : interval_{interval}, next_{first_tick + interval} {
+    reserve_touched(rows_, kMost);
+  }
+  /// Begins at another tick. Precondition: nothing was added yet.
+  void start(std::int64_t first_tick) noexcept { next_ = first_tick + interval_; }
   [[nodiscard]] bool due(std::int64_t tick) const noexcept { return tick >= next_; }
   void add(std::int64_t tick, const Snapshot& snapshot);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "app/identify/motion_excerpt.hpp"
 
+#include "app/identify/touched.hpp"
+
 namespace dampline::app {
 
 MotionExcerpt::MotionExcerpt(double sample_rate_hz)
     : length_{static_cast<std::size_t>(kLengthSeconds * sample_rate_hz)} {
-  current_.reserve(length_);
-  best_.reserve(length_);
+  reserve_touched(current_, length_);
+  reserve_touched(best_, length_);
 }
 
 void MotionExcerpt::take(const Motion& motion) {

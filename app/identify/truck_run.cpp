@@ -39,6 +39,13 @@ Memory memory_of(const std::string& word) {
   return word == "forgetting" ? Memory::kForgetting : Memory::kInfinite;
 }
 
+TruckRecord record_of(const TruckView& view, const MeasuredRate& rate, double nominal_hz,
+                      const std::string& source) {
+  const RateCorrection correction = make_correction(rate, nominal_hz, source);
+  return {corrected(view.snapshot, correction), correction,      rate,
+          nominal_hz * correction.ratio,        view.first_tick, view.newest_tick};
+}
+
 IdentifierConfig with_screen(IdentifierConfig core, const ScreenConfig& screen) {
   core.screen = screen;
   return core;
@@ -83,8 +90,8 @@ void TruckRun::take(const Sample& sample) {
   if (!started_) {
     started_ = true;
     first_tick_ = sample.tick;
-    history_ = {static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz),
-                first_tick_};
+    first_time_ns_ = sample.time_ns;
+    history_.start(first_tick_);
   }
   newest_tick_ = std::max(newest_tick_, sample.tick);
   clipping_.take(sample);
@@ -112,18 +119,21 @@ const ConvergenceHistory::Row* TruckRun::newest() const noexcept {
   return history_.rows().empty() ? nullptr : &history_.rows().back();
 }
 
+TruckView TruckRun::view() noexcept {
+  return {identifier_->snapshot(), first_tick_, newest_tick_, first_time_ns_};
+}
+
+RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const Config& config,
+                        const std::string& source) {
+  return describe_truck(record_of(view, rate, config.input.sample_rate_hz, source), config.model);
+}
+
 RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) {
   identifier_->finish();
-  const RateCorrection correction = make_correction(rate, core_.sample_rate_hz, source);
-  const Snapshot raw = identifier_->snapshot();
-  if (!raw.valid) fail_unusable(raw, source);
-  history_.add(newest_tick_, raw);
-  const TruckRecord record{corrected(raw, correction),
-                           correction,
-                           rate,
-                           core_.sample_rate_hz * correction.ratio,
-                           first_tick_,
-                           newest_tick_};
+  const TruckView last = view();
+  const TruckRecord record = record_of(last, rate, core_.sample_rate_hz, source);
+  if (!last.snapshot.valid) fail_unusable(last.snapshot, source);
+  history_.add(newest_tick_, last.snapshot);
   RunResult result = describe_truck(record, config_.model);
   result.latency_s = identifier_->motion_latency_s();
   fill_history(history_.rows(), record, result);

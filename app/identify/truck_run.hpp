@@ -20,14 +20,32 @@ namespace dampline::app {
 /// cannot use.
 [[nodiscard]] IdentifierConfig identifier_config(const Config& config);
 
+/// What is known at one moment of a run, in the core's own time. Plain: it is handed between
+/// threads.
+struct TruckView {
+  Snapshot snapshot;
+  std::int64_t first_tick{0};
+  std::int64_t newest_tick{0};
+  std::int64_t first_time_ns{0};
+};
+
+/// A view as a result, in the record's own time. Throws RunError naming `source` when the measured
+/// rate is not the nominal one. Precondition: view.snapshot.valid.
+[[nodiscard]] RunResult describe_view(const TruckView& view, const MeasuredRate& rate,
+                                      const Config& config, const std::string& source);
+
 /// One truck record through the core: takes samples, keeps what a report shows beside the result.
-/// Memory does not grow with the record.
+/// Memory does not grow with the record; take() and view() do not allocate.
 class TruckRun {
  public:
   /// `screen`: what is known of the channels; its rate is the configuration's.
   explicit TruckRun(const Config& config, const ScreenConfig& screen = {});
   void take(const Sample& sample);
   [[nodiscard]] bool empty() const noexcept { return !started_; }
+  /// Without ending the run.
+  [[nodiscard]] TruckView view() noexcept;
+  /// When the first sample was taken, by its own time. Precondition: not empty().
+  [[nodiscard]] std::int64_t first_time_ns() const noexcept { return first_time_ns_; }
   /// No more samples. Precondition: not empty(). Throws RunError naming `source` when nothing could
   /// be identified, with the reasons, or when the measured rate is not the nominal one.
   [[nodiscard]] RunResult finish(const MeasuredRate& rate, const std::string& source);
@@ -54,6 +72,7 @@ class TruckRun {
   double block_ticks_;
   bool started_{false};
   std::int64_t first_tick_{0};
+  std::int64_t first_time_ns_{0};
   std::int64_t newest_tick_{0};
   std::array<std::uint64_t, kStatuses> blocks_{};
   ConvergenceHistory history_;

@@ -20,9 +20,22 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
 /// What an earlier run may have left and this one may not write.
-constexpr std::array<std::string_view, 8> kRunFiles{
-    "parameters.json", "curve.csv",    "state.dls",  "report.html",
-    "convergence.csv", "excluded.csv", "motion.csv", "force.csv"};
+constexpr std::array<std::string_view, 10> kRunFiles{
+    "parameters.json", "curve.csv",  "state.dls", "report.html", "convergence.csv",
+    "excluded.csv",    "motion.csv", "force.csv", "events.csv",  "live.json"};
+/// What a live run writes before its end: an interrupted one is continued beside it.
+constexpr std::array<std::string_view, 2> kLiveFiles{"blackbox", "live.json"};
+
+/// Nothing but what an interrupted live run left behind.
+bool only_live_files(const fs::path& folder) {
+  return std::all_of(fs::directory_iterator{folder}, fs::directory_iterator{},
+                     [](const fs::directory_entry& entry) {
+                       const std::string name = entry.path().filename().string();
+                       return name.starts_with(".partial-") ||
+                              std::find(kLiveFiles.begin(), kLiveFiles.end(), name) !=
+                                  kLiveFiles.end();
+                     });
+}
 
 [[noreturn]] void fail(const fs::path& path, std::string_view action, int error) {
   throw RunError{fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error))};
@@ -105,7 +118,7 @@ void RunDirectory::check_target(bool replace) const {
     throw UsageError{fmt::format("{}: is a file; --out names a directory", target_.string())};
   const bool empty = fs::is_empty(target_, error);
   if (error) fail(target_, "read", error.value());
-  if (empty) return;
+  if (empty || only_live_files(target_)) return;
   if (!replace)
     throw UsageError{fmt::format("{}: holds something already; --force replaces an earlier run",
                                  target_.string())};

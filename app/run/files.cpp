@@ -40,6 +40,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   if (!result.motion.empty()) directory.write("motion.csv", to_csv(result.motion));
   if (!result.force.empty()) directory.write("force.csv", to_csv(result.force));
   directory.write("excluded.csv", to_csv(result.excluded));
+  if (!result.events.empty()) directory.write("events.csv", to_csv(result.events));
   directory.write("run.toml", files.run_toml);
 }
 
@@ -59,6 +60,7 @@ RunFiles read_files(const std::filesystem::path& run) {
   files.result.motion = read_extra(run / "motion.csv", read_motion);
   files.result.force = read_extra(run / "force.csv", read_force);
   files.result.excluded = read_extra(run / "excluded.csv", read_excluded);
+  files.result.events = read_extra(run / "events.csv", read_events);
   return files;
 }
 

@@ -20,6 +20,46 @@ Json estimate(const std::optional<Estimate>& value) {
   return {{"value", value->value}, {"std", value->std}, {"unit", "Hz"}};
 }
 
+Json live(const LiveFigures& f) {
+  return {{"state", f.state},
+          {"lateness_us",
+           {{"p50", f.lateness_p50_us},
+            {"p99", f.lateness_p99_us},
+            {"p99.9", f.lateness_p999_us},
+            {"max", f.lateness_max_us}}},
+          {"cycle_slips", f.cycle_slips},
+          {"minor_faults", f.minor_faults},
+          {"major_faults", f.major_faults},
+          {"memory_locked", f.memory_locked},
+          {"realtime_scheduled", f.realtime_scheduled},
+          {"first_sample_s", number(f.first_sample_s)},
+          {"silence_s", f.silence_s},
+          {"recording", f.recording},
+          {"recorded_bytes", f.recorded_bytes},
+          {"records_lost", f.records_lost}};
+}
+
+LiveFigures read_live(const Json& json) {
+  LiveFigures f;
+  f.state = json.at("state");
+  const Json& lateness = json.at("lateness_us");
+  f.lateness_p50_us = lateness.at("p50");
+  f.lateness_p99_us = lateness.at("p99");
+  f.lateness_p999_us = lateness.at("p99.9");
+  f.lateness_max_us = lateness.at("max");
+  f.cycle_slips = json.at("cycle_slips");
+  f.minor_faults = json.at("minor_faults");
+  f.major_faults = json.at("major_faults");
+  f.memory_locked = json.at("memory_locked");
+  f.realtime_scheduled = json.at("realtime_scheduled");
+  if (!json.at("first_sample_s").is_null()) f.first_sample_s = json.at("first_sample_s");
+  f.silence_s = json.at("silence_s");
+  f.recording = json.at("recording");
+  f.recorded_bytes = json.at("recorded_bytes");
+  f.records_lost = json.at("records_lost");
+  return f;
+}
+
 Json parameters(const RunResult& result) {
   Json list = Json::array();
   for (const Parameter& p : result.parameters)
@@ -64,6 +104,8 @@ RunResult read_result(const Json& json) {
   result.excluded_more = json.at("excluded_more");
   result.warnings = json.at("warnings");
   result.notes = json.at("notes");
+  result.events_more = json.value("events_more", std::uint64_t{0});
+  if (json.contains("live")) result.live = read_live(json.at("live"));
   return result;
 }
 
@@ -72,25 +114,27 @@ RunResult read_result(const Json& json) {
 std::string to_json(const RunResult& result) {
   Json counts = Json::object();
   for (const auto& [name, count] : result.counts) counts[name] = count;
-  const Json json{{"parameters", parameters(result)},
-                  {"counts", counts},
-                  {"fit",
-                   {{"nmse", number(result.fit.nmse)},
-                    {"rrse", number(result.fit.rrse)},
-                    {"held_out_nmse", number(result.fit.held_out_nmse)}}},
-                  {"kind", result.kind},
-                  {"headline", result.headline},
-                  {"model", result.model},
-                  {"std_is_lower_bound", result.std_is_lower_bound},
-                  {"stick_share", number(result.stick_share)},
-                  {"excitation", number(result.excitation)},
-                  {"asymmetry", result.asymmetry},
-                  {"sample_rate", estimate(result.sample_rate_hz)},
-                  {"latency_s", number(result.latency_s)},
-                  {"duration_s", result.duration_s},
-                  {"excluded_more", result.excluded_more},
-                  {"warnings", result.warnings},
-                  {"notes", result.notes}};
+  Json json{{"parameters", parameters(result)},
+            {"counts", counts},
+            {"fit",
+             {{"nmse", number(result.fit.nmse)},
+              {"rrse", number(result.fit.rrse)},
+              {"held_out_nmse", number(result.fit.held_out_nmse)}}},
+            {"kind", result.kind},
+            {"headline", result.headline},
+            {"model", result.model},
+            {"std_is_lower_bound", result.std_is_lower_bound},
+            {"stick_share", number(result.stick_share)},
+            {"excitation", number(result.excitation)},
+            {"asymmetry", result.asymmetry},
+            {"sample_rate", estimate(result.sample_rate_hz)},
+            {"latency_s", number(result.latency_s)},
+            {"duration_s", result.duration_s},
+            {"excluded_more", result.excluded_more},
+            {"warnings", result.warnings},
+            {"notes", result.notes}};
+  if (result.events_more > 0) json["events_more"] = result.events_more;
+  if (result.live) json["live"] = live(*result.live);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -64,6 +64,33 @@ struct Excluded {
   std::string reason;
 };
 
+/// Something that happened beside the samples: the link went down, a marker, a rotated file.
+struct RunEvent {
+  double time_s{0.0};  ///< from the first sample; before it negative
+  std::string name;    ///< "link_down", "marker_on", ...
+  std::uint64_t line{0};
+  std::int64_t value{0};
+};
+
+/// How a live run kept up. Times from a frame's stamp to its result.
+struct LiveFigures {
+  std::string state;  ///< "waiting", "identifying", "degraded", "fault" or "ended"
+  double lateness_p50_us{0.0};
+  double lateness_p99_us{0.0};
+  double lateness_p999_us{0.0};
+  double lateness_max_us{0.0};
+  std::uint64_t cycle_slips{0};   ///< samples that were late by more than one sampling period
+  std::uint64_t minor_faults{0};  ///< page faults of the acquisition after its warm-up
+  std::uint64_t major_faults{0};
+  bool memory_locked{false};
+  bool realtime_scheduled{false};
+  std::optional<double> first_sample_s;  ///< from the start of the program to the first sample
+  double silence_s{0.0};                 ///< without a sample, until now
+  bool recording{false};
+  std::uint64_t recorded_bytes{0};
+  std::uint64_t records_lost{0};
+};
+
 /// What an identification hands to the run directory. The order of `parameters`, `counts` and
 /// `notes` is the order in which people see them.
 struct RunResult {
@@ -88,6 +115,9 @@ struct RunResult {
   std::vector<ForceRow> force;     ///< an excerpt; empty for a truck
   std::vector<Excluded> excluded;  ///< capped
   std::uint64_t excluded_more{0};  ///< stretches beyond the cap
+  std::vector<RunEvent> events;    ///< capped
+  std::uint64_t events_more{0};    ///< events beyond the cap
+  std::optional<LiveFigures> live;
 };
 
 }  // namespace dampline::app

@@ -13,7 +13,7 @@
 #include <type_traits>
 
 #include "app/error.hpp"
-#include "app/run/crc32c.hpp"
+#include "drivers/checksum/crc32c.hpp"
 #include "dampline/estimate/merge.hpp"
 
 namespace dampline::app {
@@ -139,7 +139,7 @@ void walk(Archive& archive, S& statistics) {
 }
 
 std::uint32_t checksum(std::string_view bytes) {
-  return crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  return drivers::crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
 [[noreturn]] void fail(const std::string& origin, const std::string& what) {

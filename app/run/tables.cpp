@@ -99,6 +99,13 @@ std::string to_csv(const std::vector<Excluded>& excluded) {
   return out;
 }
 
+std::string to_csv(const std::vector<RunEvent>& events) {
+  std::string out = "time_s,event,line,value\n";
+  for (const RunEvent& r : events)
+    out += fmt::format("{:.6f},{},{},{}\n", r.time_s, r.name, r.line, r.value);
+  return out;
+}
+
 std::vector<CurveRow> read_curve(std::string_view text, const std::string& origin) {
   std::vector<CurveRow> curve;
   read_rows(text, origin, [&](const Cells& c) {
@@ -148,6 +155,16 @@ std::vector<Excluded> read_excluded(std::string_view text, const std::string& or
     excluded.push_back({number(c.at(0)), number(c.at(1)), std::string{c.at(2)}});
   });
   return excluded;
+}
+
+std::vector<RunEvent> read_events(std::string_view text, const std::string& origin) {
+  std::vector<RunEvent> events;
+  read_rows(text, origin, [&](const Cells& c) {
+    events.push_back({number(c.at(0)), std::string{c.at(1)},
+                      static_cast<std::uint64_t>(number(c.at(2))),
+                      static_cast<std::int64_t>(number(c.at(3)))});
+  });
+  return events;
 }
 
 }  // namespace dampline::app

@@ -15,11 +15,13 @@ namespace dampline::app {
 [[nodiscard]] std::string to_csv(const std::vector<MotionRow>& motion);
 [[nodiscard]] std::string to_csv(const std::vector<ForceRow>& force);
 [[nodiscard]] std::string to_csv(const std::vector<Excluded>& excluded);
+[[nodiscard]] std::string to_csv(const std::vector<RunEvent>& events);
 
 [[nodiscard]] std::vector<CurveRow> read_curve(std::string_view text, const std::string& origin);
 [[nodiscard]] Convergence read_convergence(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<MotionRow> read_motion(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<ForceRow> read_force(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<Excluded> read_excluded(std::string_view text, const std::string& origin);
+[[nodiscard]] std::vector<RunEvent> read_events(std::string_view text, const std::string& origin);
 
 }  // namespace dampline::app

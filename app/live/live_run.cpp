@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "app/live/live_run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "app/error.hpp"
+#include "app/identify/frame_counts.hpp"
+#include "app/run/state_file.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::chrono::milliseconds kTurn{100};
+constexpr std::int64_t kStallNs = 5'000'000'000;
+
+AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const LiveOptions& options) {
+  AcquisitionConfig config;
+  config.assembler = assembler;
+  config.publish_interval_ns = std::llround(1e9 * options.publish_every_s);
+  return config;
+}
+
+ScreenConfig screen_of(const AssemblerConfig& assembler) {
+  ScreenConfig screen;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    screen.step_mps2[c] = std::fabs(assembler.channels[c].accel.scale);
+  return screen;
+}
+
+}  // namespace
+
+LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const LiveParts& parts,
+                 const LiveOptions& options, LiveOutlets outlets)
+    : config_{config},
+      channels_{assembler.channels},
+      parts_{parts},
+      options_{options},
+      outlets_{std::move(outlets)},
+      truck_{config, screen_of(assembler)},
+      acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
+                                                 acquisition_config(assembler, options))},
+      recorder_{*parts.sink, *parts.clock, acquisition_->items(), acquisition_->items_lost()},
+      monitor_{*acquisition_, parts.clock->monotonic_ns()},
+      start_ns_{parts.clock->monotonic_ns()} {}
+
+Identified LiveRun::run() {
+  const Signals signals;  // before the threads, which inherit what it blocks
+  note(hal::EventKind::kRunStart, parts_.run_time.offset_ns);
+  lock_memory(realtime_);
+  recorder_.start();
+  std::thread acquisition{[this] { acquire(); }};
+  while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
+  if (outlets_.begin) outlets_.begin(recorder_);
+  watch(signals);
+  acquisition_->stop();
+  acquisition.join();
+  acquisition_->finish();
+  note(hal::EventKind::kRunEnd, static_cast<std::int64_t>(parts_.source->health().frames));
+  recorder_.stop();
+  return conclude();
+}
+
+void LiveRun::acquire() {
+  schedule_fifo(options_.realtime_priority, realtime_);
+  prefault_stack();
+  ready_.store(true, std::memory_order_release);
+  acquisition_->run();
+}
+
+void LiveRun::note(hal::EventKind kind, std::int64_t value) {
+  const std::int64_t now_ns = parts_.run_time.from_monotonic(parts_.clock->monotonic_ns());
+  recorder_.add({now_ns, kind, 0, value});
+}
+
+void LiveRun::watch(const Signals& signals) {
+  const std::int64_t end_ns = start_ns_ + std::llround(1e9 * options_.duration_s);
+  while (!acquisition_->ended()) {
+    const SignalSeen seen = signals.wait(kTurn);
+    if (seen == SignalSeen::kStop) return;
+    if (seen == SignalSeen::kRotate) recorder_.rotate();
+    const std::int64_t now_ns = parts_.clock->monotonic_ns();
+    const Condition condition = monitor_.look(recorder_.health(), now_ns);
+    state_ = judge(condition);
+    silence_ns_ = condition.silence_ns;
+    if (outlets_.turn) outlets_.turn(state_, now_ns);
+    if (outlets_.alive && monitor_.stall_ns(now_ns) < kStallNs) outlets_.alive();
+    publish_when_fresh();
+    if (options_.duration_s > 0.0 && now_ns >= end_ns) return;
+  }
+}
+
+void LiveRun::publish_when_fresh() {
+  if (!acquisition_->status().take() || !outlets_.publish) return;
+  outlets_.publish(live_result(acquisition_->status().front(),
+                               surroundings(std::string{name_of(state_)}), config_));
+}
+
+LiveSurroundings LiveRun::surroundings(const std::string& state) const {
+  return {parts_.name, realtime_, recorder_.health(), options_.record,
+          state,       start_ns_, silence_ns_};
+}
+
+Identified LiveRun::conclude() {
+  const LiveStatus status = acquisition_->final_status();
+  if (truck_.empty())
+    throw RunError{fmt::format("{}: not one complete sample: {}", parts_.name,
+                               explain_no_sample(status.source, status.assembler, channels_))};
+  Identified out;
+  out.result = truck_.finish(status.rate, parts_.name);
+  describe_frames(status.source, status.assembler, out.result);
+  describe_live(status, surroundings("ended"), out.result);
+  recorder_.events().describe(truck_.first_time_ns(), out.result);
+  const auto statistics = std::make_unique<Statistics>();
+  truck_.export_statistics(*statistics);
+  out.state = encode_state(*statistics);
+  return out;
+}
+
+}  // namespace dampline::app

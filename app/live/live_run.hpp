@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "app/config/config.hpp"
+#include "app/identify/identify_source.hpp"
+#include "app/live/acquisition.hpp"
+#include "app/live/live_result.hpp"
+#include "app/live/monitor.hpp"
+#include "app/live/recorder.hpp"
+#include "app/live/signals.hpp"
+#include "hal/clock.hpp"
+#include "hal/record_sink.hpp"
+
+namespace dampline::app {
+
+struct LiveOptions {
+  double duration_s{0.0};  ///< 0: until a signal
+  double publish_every_s{10.0};
+  int realtime_priority{50};  ///< 0: ordinary scheduling
+  bool record{true};          ///< the sink is a black box, not a void
+};
+
+/// What a live run is made of; all of it outlives the run.
+struct LiveParts {
+  std::string name;  ///< of the source, "can0"
+  hal::FrameSource* source{nullptr};
+  hal::RecordSink* sink{nullptr};
+  const hal::Clock* clock{nullptr};
+  hal::RunTime run_time;
+};
+
+/// What the main thread tells the world; each is called from the thread that called run().
+struct LiveOutlets {
+  std::function<void(const RunResult&)> publish;      ///< every publish_every_s
+  std::function<void(LiveState, std::int64_t)> turn;  ///< some times a second; monotonic
+  std::function<void()> alive;                        ///< while the acquisition comes round
+  std::function<void(Recorder&)> begin;               ///< threads run
+};
+
+/// Identification of a live bus: an acquisition thread that must keep up, a writer's thread that
+/// may wait for a disk, and the caller's thread, which publishes and listens for signals. A lost
+/// signal is waited out. Ends after the duration, on SIGINT or SIGTERM, or with its source.
+class LiveRun {
+ public:
+  LiveRun(const Config& config, const AssemblerConfig& assembler, const LiveParts& parts,
+          const LiveOptions& options, LiveOutlets outlets);
+  /// Throws RunError when nothing could be identified; the black box is complete all the same.
+  [[nodiscard]] Identified run();
+
+ private:
+  void acquire();
+  void watch(const Signals& signals);
+  void publish_when_fresh();
+  [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
+  [[nodiscard]] Identified conclude();
+  void note(hal::EventKind kind, std::int64_t value);
+
+  Config config_;
+  std::array<ChannelConfig, kChannels> channels_;
+  LiveParts parts_;
+  LiveOptions options_;
+  LiveOutlets outlets_;
+  TruckRun truck_;
+  std::unique_ptr<Acquisition> acquisition_;
+  Recorder recorder_;
+  Monitor monitor_;
+  Realtime realtime_;  // written before the threads are told apart, and by acquire()
+  std::atomic<bool> ready_{false};
+  std::int64_t start_ns_;
+  std::int64_t silence_ns_{0};
+  LiveState state_{LiveState::kWaiting};
+};
+
+}  // namespace dampline::app

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "app/live/recorder.hpp"
+
+#include <algorithm>
+
+namespace dampline::app {
+namespace {
+
+constexpr std::int64_t kTurnNs = 100'000'000;
+
+}  // namespace
+
+Recorder::Recorder(hal::RecordSink& sink, const hal::Clock& clock, SpscRing<RecordItem>& items,
+                   const std::atomic<std::uint64_t>& items_lost)
+    : sink_{sink}, clock_{clock}, items_{items}, items_lost_{items_lost} {}
+
+void Recorder::start() {
+  thread_ = std::thread{[this] { loop(); }};
+}
+
+void Recorder::stop() {
+  if (!thread_.joinable()) return;
+  stop_.store(true, std::memory_order_release);
+  thread_.join();
+}
+
+void Recorder::add(const hal::Event& event) {
+  const std::lock_guard lock{others_mutex_};
+  others_.push_back(event);
+}
+
+hal::RecordHealth Recorder::health() const {
+  const std::lock_guard lock{health_mutex_};
+  return health_;
+}
+
+void Recorder::loop() noexcept {
+  while (!stop_.load(std::memory_order_acquire)) {
+    turn();
+    clock_.sleep_until(clock_.monotonic_ns() + kTurnNs);
+  }
+  turn();
+  sink_.close();
+  const std::lock_guard lock{health_mutex_};
+  health_ = sink_.health();
+}
+
+void Recorder::turn() noexcept {
+  RecordItem item;
+  while (items_.pop(item)) {
+    newest_ns_ = std::max(newest_ns_, item.is_event ? item.event.time_ns : item.frame.time_ns);
+    if (!item.is_event) {
+      sink_.write(item.frame);
+      continue;
+    }
+    sink_.write(item.event);
+    events_.add(item.event);
+  }
+  take_lost();
+  {
+    const std::lock_guard lock{others_mutex_};
+    for (const hal::Event& event : others_) {
+      sink_.write(event);
+      events_.add(event);
+    }
+    others_.clear();
+  }
+  if (rotate_.exchange(false, std::memory_order_acq_rel)) sink_.rotate();
+  sink_.tick(clock_.monotonic_ns());
+  const std::lock_guard lock{health_mutex_};
+  health_ = sink_.health();
+}
+
+void Recorder::take_lost() noexcept {
+  const std::uint64_t lost = items_lost_.load(std::memory_order_acquire);
+  if (lost == known_lost_) return;
+  const hal::Event event{newest_ns_, hal::EventKind::kRecordsLost, 0,
+                         static_cast<std::int64_t>(lost - known_lost_)};
+  known_lost_ = lost;
+  sink_.write(event);
+  events_.add(event);
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+
+#include "app/identify/event_list.hpp"
+#include "app/live/record_item.hpp"
+#include "app/live/spsc_ring.hpp"
+#include "hal/clock.hpp"
+#include "hal/record_sink.hpp"
+
+namespace dampline::app {
+
+/// The writer's thread: empties the rings of the acquisition and of the edges into the black box,
+/// and keeps the list of events. A slow disk delays only this thread.
+class Recorder {
+ public:
+  /// `items_lost` counts what the acquisition could not hand over.
+  Recorder(hal::RecordSink& sink, const hal::Clock& clock, SpscRing<RecordItem>& items,
+           const std::atomic<std::uint64_t>& items_lost);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  ~Recorder() { stop(); }
+
+  void start();
+  /// Writes what the rings hold, closes the sink and ends the thread. The second time: nothing.
+  void stop();
+  /// Ends the current file of the black box soon.
+  void rotate() noexcept { rotate_.store(true, std::memory_order_release); }
+  /// Another source of events, any thread.
+  void add(const hal::Event& event);
+  [[nodiscard]] hal::RecordHealth health() const;
+  /// After stop().
+  [[nodiscard]] const EventList& events() const noexcept { return events_; }
+
+ private:
+  void loop() noexcept;
+  void turn() noexcept;
+  void take_lost() noexcept;
+
+  hal::RecordSink& sink_;
+  const hal::Clock& clock_;
+  SpscRing<RecordItem>& items_;
+  const std::atomic<std::uint64_t>& items_lost_;
+  std::uint64_t known_lost_{0};
+  std::int64_t newest_ns_{0};  // run time of the newest item
+  EventList events_;
+  std::mutex others_mutex_;  // of what comes from other threads than the acquisition
+  std::vector<hal::Event> others_;
+  mutable std::mutex health_mutex_;
+  hal::RecordHealth health_;
+  std::atomic<bool> rotate_{false};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace dampline::app
