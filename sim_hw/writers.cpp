@@ -1,54 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sim_hw/writers.hpp"
 
-#include <array>
-#include <cstdint>
 #include <iterator>
 
 namespace dampline::sim {
-namespace {
-
-constexpr std::string_view kHex = "0123456789ABCDEF";
-
-/// `digits` decimal digits of `value`, leading zeros kept.
-char* put_decimal(char* at, std::uint64_t value, int digits) noexcept {
-  for (int i = digits - 1; i >= 0; --i) {
-    at[i] = static_cast<char>('0' + value % 10);
-    value /= 10;
-  }
-  return at + digits;
-}
-
-char* put_hex(char* at, std::uint32_t value, int digits) noexcept {
-  for (int i = digits - 1; i >= 0; --i) {
-    at[i] = kHex[value & 0xfU];
-    value >>= 4U;
-  }
-  return at + digits;
-}
-
-char* put_text(char* at, std::string_view text) noexcept { return at + text.copy(at, text.size()); }
-
-}  // namespace
-
-void append_candump(TextBuffer& text, const CanFrame& frame, std::string_view interface_name) {
-  std::array<char, 96> line{};
-  const auto micro = static_cast<std::uint64_t>(frame.time_ns) / 1000;
-  char* at = line.data();
-  *at++ = '(';
-  at = put_decimal(at, micro / 1'000'000, 10);
-  *at++ = '.';
-  at = put_decimal(at, micro % 1'000'000, 6);
-  at = put_text(at, ") ");
-  at = put_text(at, interface_name.substr(0, 15));
-  *at++ = ' ';
-  at = put_hex(at, frame.id, frame.extended ? 8 : 3);
-  *at++ = '#';
-  for (std::size_t i = 0; i < frame.length && i < 8; ++i) at = put_hex(at, frame.data[i], 2);
-  *at++ = '\n';
-  text.append(line.data(), at);
-}
-
 void append_csv(TextBuffer& text, const SimulatedSample& sample) {
   const auto& a = sample.accel_mps2;
   fmt::format_to(std::back_inserter(text), "{:.9f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, a[0],

@@ -5,17 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "dampline/sample/can_frame.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {
 
 /// Text grows here; whoever owns it empties it into a file.
 using TextBuffer = fmt::memory_buffer;
-
-/// One line as `candump -l` writes it: "(1700000000.000200) can0 310#0A1B2C00\n".
-/// Classic data frames only.
-void append_candump(TextBuffer& text, const CanFrame& frame, std::string_view interface_name);
 
 inline constexpr std::string_view kSampleHeader =
     "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";

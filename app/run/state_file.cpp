@@ -13,8 +13,8 @@
 #include <type_traits>
 
 #include "app/error.hpp"
-#include "drivers/checksum/crc32c.hpp"
 #include "dampline/estimate/merge.hpp"
+#include "drivers/checksum/crc32c.hpp"
 
 namespace dampline::app {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "app/error.hpp"
 #include "app/verbs/text_file.hpp"
+#include "drivers/candump/line_writer.hpp"
 #include "sim_hw/writers.hpp"
 
 namespace dampline::app {
@@ -107,7 +108,7 @@ std::uint64_t write_record(const SimulateOptions& options, const SimulatedRun& r
       ++lines;
     } else {
       for (const CanFrame& frame : transport.pass(nodes.pack(sample), sample.time_s)) {
-        sim::append_candump(record.buffer(), frame, options.interface);
+        drivers::append_candump(record.buffer(), frame, options.interface);
         ++lines;
       }
     }

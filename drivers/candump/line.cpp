@@ -60,7 +60,8 @@ struct Scanner {
 
   bool interface(std::string_view& name) noexcept {
     if (*at != ' ') return fail("a space and the interface");
-    const char* begin = ++at;
+    while (*at == ' ') ++at;  // candump aligns names of unequal length
+    const char* begin = at;
     while (*at > ' ' && *at < 0x7F && *at != '#') ++at;
     const std::ptrdiff_t length = at - begin;
     if (length < 1 || length > kLongestName || *at != ' ')
@@ -88,6 +89,7 @@ struct Scanner {
 
   bool payload(CanFrame& frame) noexcept {
     frame.fd = false;
+    frame.fd_flags = 0;
     frame.remote = false;
     frame.data.fill(0);
     frame.length = 0;
@@ -109,7 +111,7 @@ struct Scanner {
   bool fd(CanFrame& frame) noexcept {
     ++at;
     if (hex(*at) == kNoDigit) return fail("one digit of CAN FD flags");
-    ++at;
+    frame.fd_flags = hex(*at++);
     frame.fd = true;
     if (!bytes(frame, 64)) return false;
     const std::uint8_t length = frame.length;

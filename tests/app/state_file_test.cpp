@@ -8,7 +8,6 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "app/run/crc32c.hpp"
 #include "dampline/damping/summary.hpp"
 #include "dampline/identifier.hpp"
 #include "sim_hw/simulation.hpp"
@@ -48,12 +47,6 @@ std::string error_of(std::string_view bytes) {
     return error.what();
   }
   return "no error";
-}
-
-TEST(Crc32c, GivesTheCheckValueOfTheStandard) {
-  const std::string digits = "123456789";
-  EXPECT_EQ(crc32c({reinterpret_cast<const std::uint8_t*>(digits.data()), digits.size()}),
-            0xE3069283U);
 }
 
 TEST(StateFile, ReadsBackEveryField) {

@@ -6,51 +6,12 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "sim_hw/faults.hpp"
-#include "sim_hw/nodes.hpp"
 #include "sim_hw/presets.hpp"
 
 namespace dampline::sim {
 namespace {
-
-CanFrame frame_of(std::int64_t time_ns, std::uint32_t id, std::vector<std::uint8_t> data) {
-  CanFrame frame;
-  frame.time_ns = time_ns;
-  frame.id = id;
-  frame.length = static_cast<std::uint8_t>(data.size());
-  std::ranges::copy(data, frame.data.begin());
-  return frame;
-}
-
-std::string line_of(const CanFrame& frame, std::string_view interface_name) {
-  TextBuffer text;
-  append_candump(text, frame, interface_name);
-  return fmt::to_string(text);
-}
-
-TEST(CandumpWriter, WritesTheBytesThatCanUtilsWrites) {
-  EXPECT_EQ(line_of(frame_of(1'700'000'000'000'200'999, 0x310, {0x0a, 0x1b, 0x2c, 0}), "can0"),
-            "(1700000000.000200) can0 310#0A1B2C00\n");
-  EXPECT_EQ(line_of(frame_of(1'000'001'999, 0x07, {}), "vcan12"),
-            "(0000000001.000001) vcan12 007#\n");
-  CanFrame wide = frame_of(1'700'000'000'999'999'999, 0x1abcdef, {1, 2, 3, 4, 5, 6, 7, 255});
-  wide.extended = true;
-  EXPECT_EQ(line_of(wide, "can1"), "(1700000000.999999) can1 01ABCDEF#01020304050607FF\n");
-}
-
-TEST(CandumpWriter, WritesLinesOfOneFormOnly) {
-  Simulation simulation{reference_run(Load::kLaden, 80.0, 1)};
-  SensorNodes nodes{{}, 1};
-  for (int i = 0; i < 100; ++i) {
-    for (const CanFrame& frame : nodes.pack(simulation.next())) {
-      EXPECT_THAT(
-          line_of(frame, "can0"),
-          ::testing::MatchesRegex("\\([0-9]{10}\\.[0-9]{6}\\) can0 31[012]#[0-9A-F]{6}0[01]\n"));
-    }
-  }
-}
 
 TEST(CsvWriter, WritesTheCanonicalColumns) {
   EXPECT_EQ(kSampleHeader, "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n");

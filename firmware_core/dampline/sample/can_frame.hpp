@@ -18,6 +18,7 @@ struct CanFrame {
   bool remote{false};               ///< remote request: carries no data
   bool error{false};                ///< error frame: carries no sample
   bool fd{false};                   ///< CAN FD
+  std::uint8_t fd_flags{0};  ///< of CAN FD, as the kernel has them: 1 bit rate, 2 error state
   TimeSource time_source{TimeSource::kUnknown};
   std::array<std::uint8_t, 64> data{};
 };
