@@ -49,7 +49,7 @@ inline void check_edge_source_contract(hal::EdgeSource& source, const MoveLine& 
     EXPECT_EQ(all[i].line, 0);
     EXPECT_EQ(all[i].rising, i % 2 == 0);
     EXPECT_FALSE(all[i].impossible);
-    if (i > 0) EXPECT_GE(all[i].time_ns, all[i - 1].time_ns);
+    EXPECT_GE(all[i].time_ns, all[i > 0 ? i - 1 : 0].time_ns);
   }
   const hal::EdgeHealth health = source.health();
   EXPECT_EQ(health.edges, 6U);

@@ -26,6 +26,9 @@ enum class Call : std::uint8_t {
   kFlock,
   kMmap,
   kMlockall,
+  kFcntl,
+  kPpoll,
+  kGpio,  ///< any call of libgpiod that the driver makes and that can fail
   kCount,
 };
 
