@@ -29,8 +29,19 @@ class Clock {
 struct RunTime {
   std::int64_t offset_ns{0};  ///< whole microseconds, so that times keep their digits in text
 
+  /// The best of a few readings: a thread may be interrupted between the two clocks.
   [[nodiscard]] static RunTime start(const Clock& clock) noexcept {
-    const std::int64_t offset_ns = clock.realtime_ns() - clock.monotonic_ns();
+    constexpr int kReadings = 8;
+    std::int64_t offset_ns = 0;
+    std::int64_t shortest_ns = 0;
+    for (int i = 0; i < kReadings; ++i) {
+      const std::int64_t before_ns = clock.monotonic_ns();
+      const std::int64_t wall_ns = clock.realtime_ns();
+      const std::int64_t took_ns = clock.monotonic_ns() - before_ns;
+      if (i > 0 && took_ns >= shortest_ns) continue;
+      shortest_ns = took_ns;
+      offset_ns = wall_ns - before_ns - took_ns / 2;
+    }
     return {offset_ns - offset_ns % 1000};
   }
   [[nodiscard]] std::int64_t from_monotonic(std::int64_t monotonic_ns) const noexcept {
