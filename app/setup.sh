@@ -15,6 +15,8 @@ libfmt-dev           text output
 libspdlog-dev        log messages
 gnuplot-nox          draws the plots of report.html
 nettle-dev           SHA-256 of the input files
+libgpiod-dev         marker lines and the status lamp
+pkg-config           finds libgpiod and its version
 "
 readonly test_packages="
 libgtest-dev         the tests' framework
@@ -22,6 +24,20 @@ libgmock-dev         its matchers
 libbenchmark-dev     the programs in bench/
 binutils             nm, which lists the core's symbols
 valgrind             counts instructions per sample
+systemd              systemd-analyze, which rates the service's sandbox
+mandoc               checks the man page
+"
+readonly bus_packages="
+can-utils            candump, cansend, canplayer
+iproute2             makes and breaks CAN interfaces
+gpiod                gpioget and gpiomon
+kmod                 loads vcan and gpio-sim, where the running kernel has them
+linux-source-6.1     User-Mode Linux, where it has not
+xz-utils             unpacks its source
+make                 builds it
+flex                 generates scanners in that build
+bison                generates parsers in it
+bc                   calculates in it
 "
 
 fail() {
@@ -81,6 +97,29 @@ configure() {
     cat "$folder.log" >&2
     fail "cmake failed"
   }
+}
+
+# start_kernel: builds User-Mode Linux for tests/bus beside whatever follows, unless that was done.
+start_kernel() {
+  kernel_job=
+  sim_hw/virtual_bus/build_kernel --find >/dev/null && return
+  mkdir -p build
+  echo "Building a kernel for the tests on the CAN bus meanwhile (User-Mode Linux, once) ..."
+  sim_hw/virtual_bus/build_kernel >build/kernel.log 2>&1 &
+  kernel_job=$!
+  trap 'kill "$kernel_job" 2>/dev/null || true' EXIT
+}
+
+# await_kernel: without it the tests on the CAN bus are skipped, or fail as they say.
+await_kernel() {
+  [[ -n $kernel_job ]] || return 0
+  if wait "$kernel_job"; then
+    grep -o 'built in .*' build/kernel.log | sed 's/^/User-Mode Linux was /' || true
+  else
+    echo "User-Mode Linux could not be built; the tests on the CAN bus will say so:"
+    tail -n 3 build/kernel.log
+  fi
+  trap - EXIT
 }
 
 # run_tests FOLDER [ctest options]: sets passed, failed and skipped; never ends the script.
