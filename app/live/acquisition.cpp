@@ -57,7 +57,7 @@ void Acquisition::take(std::size_t count) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     item_.is_event = false;
     item_.frame = frames_[i];
-    pass_on(item_);
+    items_.push(item_);
     assembler_.push(frames_[i]);
     take_samples();
   }
@@ -82,14 +82,10 @@ void Acquisition::take_samples() noexcept {
 
 void Acquisition::take_events() noexcept {
   item_.is_event = true;
-  while (source_.next_event(item_.event)) pass_on(item_);
+  while (source_.next_event(item_.event)) items_.push(item_);
   const hal::SourceHealth health = source_.health();
   dropped_.store(health.dropped, std::memory_order_release);
   link_up_.store(health.link_up, std::memory_order_release);
-}
-
-void Acquisition::pass_on(const RecordItem& item) noexcept {
-  if (!items_.push(item)) items_lost_.fetch_add(1, std::memory_order_release);
 }
 
 void Acquisition::watch_signal(std::int64_t now_ns) noexcept {
@@ -101,7 +97,7 @@ void Acquisition::watch_signal(std::int64_t now_ns) noexcept {
   item_.event = {now_ns, hal::EventKind::kSignalLost, 0, 0};
   if (!lost)
     item_.event = {now_ns, hal::EventKind::kSignalBack, 0, newest_sample_ns_ - silent_since_ns_};
-  pass_on(item_);
+  items_.push(item_);
 }
 
 void Acquisition::publish_when_due(std::int64_t monotonic_ns) noexcept {

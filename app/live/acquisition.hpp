@@ -9,8 +9,7 @@
 #include "app/live/lateness.hpp"
 #include "app/live/latest.hpp"
 #include "app/live/realtime.hpp"
-#include "app/live/record_item.hpp"
-#include "app/live/spsc_ring.hpp"
+#include "app/live/record_queue.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_source.hpp"
@@ -57,14 +56,12 @@ class Acquisition {
   // For other threads, at any time.
   [[nodiscard]] std::uint64_t heartbeats() const noexcept { return load(heartbeats_); }
   [[nodiscard]] std::uint64_t samples() const noexcept { return load(samples_); }
-  [[nodiscard]] const std::atomic<std::uint64_t>& items_lost() const noexcept {
-    return items_lost_;
-  }
   [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return load(dropped_); }
   [[nodiscard]] bool link_up() const noexcept { return link_up_.load(std::memory_order_acquire); }
   [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
   /// For the writer's thread.
-  [[nodiscard]] SpscRing<RecordItem>& items() noexcept { return items_; }
+  [[nodiscard]] RecordQueue& items() noexcept { return items_; }
+  [[nodiscard]] const RecordQueue& items() const noexcept { return items_; }
   /// For the publishing thread.
   [[nodiscard]] Latest<LiveStatus>& status() noexcept { return status_; }
 
@@ -81,7 +78,6 @@ class Acquisition {
   void take(std::size_t count) noexcept;
   void take_samples() noexcept;
   void take_events() noexcept;
-  void pass_on(const RecordItem& item) noexcept;
   void watch_signal(std::int64_t now_ns) noexcept;
   void note_faults() noexcept;
   void publish_when_due(std::int64_t monotonic_ns) noexcept;
@@ -97,7 +93,7 @@ class Acquisition {
   std::int64_t next_publish_ns_;
   std::array<CanFrame, kBatch> frames_{};
   RecordItem item_{};
-  SpscRing<RecordItem> items_;
+  RecordQueue items_;
   Latest<LiveStatus> status_;
   Lateness lateness_;
   std::uint64_t slips_{0};
@@ -110,7 +106,6 @@ class Acquisition {
   std::int64_t silent_since_ns_{0};
   std::atomic<std::uint64_t> heartbeats_{0};
   std::atomic<std::uint64_t> samples_{0};
-  std::atomic<std::uint64_t> items_lost_{0};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<bool> link_up_{true};
   std::atomic<bool> stop_{false};

@@ -43,7 +43,7 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       truck_{config, screen_of(assembler)},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},
-      recorder_{*parts.sink, *parts.clock, acquisition_->items(), acquisition_->items_lost()},
+      recorder_{*parts.sink, *parts.clock, acquisition_->items()},
       monitor_{*acquisition_, parts.clock->monotonic_ns()},
       start_ns_{parts.clock->monotonic_ns()} {}
 

@@ -34,10 +34,10 @@ struct LiveParts {
 
 /// What the main thread tells the world; each is called from the thread that called run().
 struct LiveOutlets {
-  std::function<void(const RunResult&)> publish;      ///< every publish_every_s
-  std::function<void(LiveState, std::int64_t)> turn;  ///< some times a second; monotonic
-  std::function<void()> alive;                        ///< while the acquisition comes round
-  std::function<void(Recorder&)> begin;               ///< threads run
+  std::function<void(const RunResult&)> publish{};      ///< every publish_every_s
+  std::function<void(LiveState, std::int64_t)> turn{};  ///< some times a second; monotonic
+  std::function<void()> alive{};                        ///< while the acquisition comes round
+  std::function<void(Recorder&)> begin{};               ///< the threads run
 };
 
 /// Identification of a live bus: an acquisition thread that must keep up, a writer's thread that

@@ -18,7 +18,7 @@ class Monitor {
   Condition look(const hal::RecordHealth& record, std::int64_t monotonic_ns) noexcept {
     note(acquisition_.samples(), samples_, sample_ns_, monotonic_ns);
     note(acquisition_.heartbeats(), beats_, beat_ns_, monotonic_ns);
-    note(acquisition_.frames_dropped() + acquisition_.items_lost().load() + record.lost, losses_,
+    note(acquisition_.frames_dropped() + acquisition_.items().lost() + record.lost, losses_,
          loss_ns_, monotonic_ns);
     return {.any_sample = samples_ > 0,
             .link_up = acquisition_.link_up(),

@@ -2,17 +2,14 @@
 #include "app/live/recorder.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace dampline::app {
 namespace {
 
-constexpr std::int64_t kTurnNs = 100'000'000;
+constexpr std::chrono::milliseconds kTurn{100};
 
 }  // namespace
-
-Recorder::Recorder(hal::RecordSink& sink, const hal::Clock& clock, SpscRing<RecordItem>& items,
-                   const std::atomic<std::uint64_t>& items_lost)
-    : sink_{sink}, clock_{clock}, items_{items}, items_lost_{items_lost} {}
 
 void Recorder::start() {
   thread_ = std::thread{[this] { loop(); }};
@@ -37,7 +34,7 @@ hal::RecordHealth Recorder::health() const {
 void Recorder::loop() noexcept {
   while (!stop_.load(std::memory_order_acquire)) {
     turn();
-    clock_.sleep_until(clock_.monotonic_ns() + kTurnNs);
+    items_.wait(kTurn);
   }
   turn();
   sink_.close();
@@ -72,7 +69,7 @@ void Recorder::turn() noexcept {
 }
 
 void Recorder::take_lost() noexcept {
-  const std::uint64_t lost = items_lost_.load(std::memory_order_acquire);
+  const std::uint64_t lost = items_.lost();
   if (lost == known_lost_) return;
   const hal::Event event{newest_ns_, hal::EventKind::kRecordsLost, 0,
                          static_cast<std::int64_t>(lost - known_lost_)};

@@ -6,8 +6,7 @@
 #include <thread>
 
 #include "app/identify/event_list.hpp"
-#include "app/live/record_item.hpp"
-#include "app/live/spsc_ring.hpp"
+#include "app/live/record_queue.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 
@@ -17,9 +16,8 @@ namespace dampline::app {
 /// and keeps the list of events. A slow disk delays only this thread.
 class Recorder {
  public:
-  /// `items_lost` counts what the acquisition could not hand over.
-  Recorder(hal::RecordSink& sink, const hal::Clock& clock, SpscRing<RecordItem>& items,
-           const std::atomic<std::uint64_t>& items_lost);
+  Recorder(hal::RecordSink& sink, const hal::Clock& clock, RecordQueue& items)
+      : sink_{sink}, clock_{clock}, items_{items} {}
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   ~Recorder() { stop(); }
@@ -42,8 +40,7 @@ class Recorder {
 
   hal::RecordSink& sink_;
   const hal::Clock& clock_;
-  SpscRing<RecordItem>& items_;
-  const std::atomic<std::uint64_t>& items_lost_;
+  RecordQueue& items_;
   std::uint64_t known_lost_{0};
   std::int64_t newest_ns_{0};  // run time of the newest item
   EventList events_;

@@ -30,6 +30,10 @@ constexpr std::string_view kConvergenceText =
 constexpr std::string_view kMotionText =
     "An excerpt of the motion between frame and wheelsets, y = 2 z_b - (z_1 + z_2), drift removed. "
     "Slow deflection (below about 1 Hz) cannot be known from accelerations and is not shown.";
+constexpr std::string_view kEventText =
+    "What happened beside the samples: markers and pulses of the digital lines, and what befell "
+    "the "
+    "bus and the recording. The numbers are in events.csv.";
 constexpr std::string_view kRigMotionText = "An excerpt of the measured motion.";
 constexpr std::string_view kForceText =
     "An excerpt of the measured force beside the force of the fitted model, over time and over "
@@ -72,6 +76,8 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
       section("Measured and fitted force", artist.figure(plot_force(result), "force", kForceText));
   body += section(
       "Motion", artist.figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));
+  body += section("Events", artist.figure(plot_events(result), "events", kEventText));
+  body += section("How the acquisition kept up", live_section(result));
   body += section("What was left out, and why",
                   artist.figure(plot_excluded(result), "excluded", "") + excluded_section(result));
   body += section("Where this comes from", provenance_section(provenance, run_toml));

@@ -22,6 +22,8 @@ struct PlotScript {
 [[nodiscard]] PlotScript plot_motion(const RunResult& result);
 /// A rig's measured and fitted force over velocity and over time: an excerpt.
 [[nodiscard]] PlotScript plot_force(const RunResult& result);
+/// One row per kind of event over the whole record.
+[[nodiscard]] PlotScript plot_events(const RunResult& result);
 /// One row per reason over the whole record.
 [[nodiscard]] PlotScript plot_excluded(const RunResult& result);
 

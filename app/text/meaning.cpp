@@ -27,7 +27,7 @@ constexpr std::array<Entry, 13> kParameters{{
     {"noise", "sensor noise of one channel, rms"},
 }};
 
-constexpr std::array<Entry, 17> kCounts{{
+constexpr std::array<Entry, 20> kCounts{{
     {"samples", "samples read"},
     {"gaps", "gaps in the sequence"},
     {"lost", "samples lost in the gaps"},
@@ -43,6 +43,9 @@ constexpr std::array<Entry, 17> kCounts{{
     {"rows_still", "equations left out: too little motion"},
     {"frames", "CAN frames read"},
     {"frames_dropped", "CAN frames known to be lost"},
+    {"frames_foreign", "CAN frames of others"},
+    {"incomplete", "instants that lacked a channel"},
+    {"restarts", "long pauses after which the channels were aligned anew"},
     {"lines_malformed", "malformed lines, skipped on request"},
     {"frames_reordered", "frames with a time before that of the frame ahead of them"},
 }};

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// The live run over interfaces: no bus, a simulated source, a sink in memory.
+#include "app/live/live_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "app/error.hpp"
+#include "app/identify/can_channels.hpp"
+#include "app/run/state_file.hpp"
+#include "dampline/sample/assembler.hpp"
+#include "drivers/os/system_clock.hpp"
+#include "sim_hw/presets.hpp"
+#include "sim_hw/simulated_source.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::int64_t kSamples = 120 * 300;
+
+class MemorySink final : public hal::RecordSink {
+ public:
+  std::vector<CanFrame> frames;
+  std::vector<hal::Event> events;
+  bool closed{false};
+  int rotations{0};
+  std::chrono::milliseconds pause{0};
+
+ private:
+  void do_write(const CanFrame& frame) noexcept override {
+    frames.push_back(frame);
+    ++health_.frames;
+    if (pause.count() > 0 && frames.size() == 1) std::this_thread::sleep_for(pause);
+  }
+  void do_write(const hal::Event& event) noexcept override { events.push_back(event); }
+  void do_tick(std::int64_t /*monotonic_ns*/) noexcept override {}
+  void do_rotate() noexcept override { ++rotations; }
+  void do_close() noexcept override { closed = true; }
+  [[nodiscard]] hal::RecordHealth do_health() const noexcept override { return health_; }
+  hal::RecordHealth health_;
+};
+
+/// Slow enough for a writer: some 60,000 frames a second.
+class Paced final : public hal::FrameSource {
+ public:
+  explicit Paced(std::unique_ptr<hal::FrameSource> inner) : inner_{std::move(inner)} {}
+
+ private:
+  Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override {
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    return inner_->read(out);
+  }
+  Result<bool> do_wait(std::chrono::nanoseconds /*timeout*/) noexcept override { return true; }
+  [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return inner_->health(); }
+  std::unique_ptr<hal::FrameSource> inner_;
+};
+
+/// Delivers what the inner source has, then stays silent for ever instead of ending.
+class Silent final : public hal::FrameSource {
+ public:
+  explicit Silent(std::unique_ptr<hal::FrameSource> inner) : inner_{std::move(inner)} {}
+
+ private:
+  Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override {
+    if (!inner_) return std::size_t{0};
+    const auto count = inner_->read(out);
+    if (!count.ok()) return std::size_t{0};
+    return count;
+  }
+  Result<bool> do_wait(std::chrono::nanoseconds timeout) noexcept override {
+    std::this_thread::sleep_for(timeout);
+    return false;
+  }
+  [[nodiscard]] hal::SourceHealth do_health() const noexcept override {
+    return inner_ ? inner_->health() : hal::SourceHealth{};
+  }
+  std::unique_ptr<hal::FrameSource> inner_;
+};
+
+std::unique_ptr<hal::FrameSource> simulated() {
+  return std::make_unique<sim::SimulatedSource>(sim::reference_run(sim::Load::kLaden, 80.0, 5),
+                                                kSamples);
+}
+
+class LiveRunTest : public ::testing::Test {
+ protected:
+  Identified run(hal::FrameSource& source, const LiveOptions& options = {.realtime_priority = 0},
+                 LiveOutlets outlets = {}) {
+    const LiveParts parts{"fake0", &source, &sink_, &clock_, hal::RunTime::start(clock_)};
+    return LiveRun{{}, can_channels({}), parts, options, std::move(outlets)}.run();
+  }
+  drivers::SystemClock clock_;
+  MemorySink sink_;
+};
+
+/// The same frames without threads.
+std::string state_of(hal::FrameSource& source) {
+  const AssemblerConfig config = can_channels({});
+  ScreenConfig screen;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    screen.step_mps2[c] = std::fabs(config.channels[c].accel.scale);
+  TruckRun truck{{}, screen};
+  const auto assembler = std::make_unique<SampleAssembler>(config);
+  Sample sample;
+  std::array<CanFrame, 7> frames;
+  for (auto count = source.read(frames); count.ok(); count = source.read(frames)) {
+    for (std::size_t i = 0; i < count.value(); ++i) {
+      assembler->push(frames[i]);
+      while (assembler->pop(sample)) truck.take(sample);
+    }
+  }
+  assembler->flush();
+  while (assembler->pop(sample)) truck.take(sample);
+  static_cast<void>(truck.finish(assembler->measured_rate(), "reference"));
+  const auto statistics = std::make_unique<Statistics>();
+  truck.export_statistics(*statistics);
+  return encode_state(*statistics);
+}
+
+TEST_F(LiveRunTest, GivesTheSameBytesAsTheSameFramesWithoutThreads) {
+  Paced live{simulated()};
+  const Identified found = run(live);
+  const auto reference = simulated();
+  EXPECT_EQ(found.state, state_of(*reference));
+  EXPECT_EQ(sink_.frames.size(), kSamples * kChannels);
+  EXPECT_TRUE(sink_.closed);
+  ASSERT_GE(sink_.events.size(), 2U);
+  EXPECT_EQ(sink_.events.front().kind, hal::EventKind::kRunStart);
+  EXPECT_EQ(sink_.events.back().kind, hal::EventKind::kRunEnd);
+  EXPECT_EQ(sink_.events.back().value, kSamples * static_cast<std::int64_t>(kChannels));
+  ASSERT_TRUE(found.result.live.has_value());
+  EXPECT_EQ(found.result.live->state, "ended");
+}
+
+TEST_F(LiveRunTest, EndsAfterItsDurationAndPublishesOnTheWay) {
+  Silent source{std::make_unique<Paced>(simulated())};
+  std::vector<RunResult> published;
+  std::vector<LiveState> states;
+  const Identified found =
+      run(source, {.duration_s = 5.0, .publish_every_s = 0.5, .realtime_priority = 0},
+          {.publish = [&](const RunResult& r) { published.push_back(r); },
+           .turn = [&](LiveState s, std::int64_t) { states.push_back(s); }});
+  ASSERT_GE(published.size(), 2U);
+  EXPECT_EQ(published.back().parameters.at(0).name, "coulomb");
+  EXPECT_GT(published.back().live->lateness_max_us, 0.0);
+  EXPECT_THAT(states, ::testing::Contains(LiveState::kIdentifying));
+  EXPECT_EQ(states.back(), LiveState::kDegraded);  // silent for more than a second
+  std::vector<std::string> names;
+  for (const RunEvent& event : found.result.events) names.push_back(event.name);
+  EXPECT_THAT(names, ::testing::Contains("signal_lost"));
+}
+
+TEST_F(LiveRunTest, StopsOnASignalAndRotatesOnAnother) {
+  Silent source{std::make_unique<Paced>(simulated())};
+  int turns = 0;
+  const Identified found =
+      run(source, {.realtime_priority = 0}, {.turn = [&](LiveState, std::int64_t) {
+            if (++turns == 3) ::raise(SIGHUP);
+            if (turns == 30) ::raise(SIGTERM);
+          }});
+  EXPECT_EQ(sink_.rotations, 1);
+  EXPECT_EQ(found.result.parameters.at(0).name, "coulomb");
+}
+
+TEST_F(LiveRunTest, SaysWhatThereWasWhenNoSampleCame) {
+  Silent source{nullptr};
+  try {
+    static_cast<void>(run(source, {.duration_s = 0.3, .realtime_priority = 0}));
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("fake0: not one complete sample: of 0 frames"));
+  }
+  EXPECT_TRUE(sink_.closed);
+}
+
+TEST_F(LiveRunTest, CountsWhatASlowDiskCouldNotTakeAndIdentifiesAllTheSame) {
+  sink_.pause = std::chrono::seconds{2};
+  const auto live = simulated();
+  const Identified found = run(*live);
+  const auto reference = simulated();
+  EXPECT_EQ(found.state, state_of(*reference));
+  std::int64_t lost = 0;
+  for (const hal::Event& event : sink_.events)
+    if (event.kind == hal::EventKind::kRecordsLost) lost += event.value;
+  EXPECT_GT(lost, 0);
+  EXPECT_EQ(sink_.frames.size() + static_cast<std::size_t>(lost), kSamples * kChannels);
+}
+
+TEST(Judge, ToldByTheWorst) {
+  const Condition good{.any_sample = true};
+  EXPECT_EQ(judge(good), LiveState::kIdentifying);
+  EXPECT_EQ(judge({}), LiveState::kWaiting);
+  EXPECT_EQ(judge({.any_sample = true, .link_up = false}), LiveState::kFault);
+  EXPECT_EQ(judge({.any_sample = true, .recording = false}), LiveState::kDegraded);
+  EXPECT_EQ(judge({.any_sample = true, .lost_lately = true}), LiveState::kDegraded);
+  EXPECT_EQ(judge({.any_sample = true, .silence_ns = kSilenceNs + 1}), LiveState::kDegraded);
+  EXPECT_EQ(judge({.any_sample = true, .silence_ns = kFaultNs + 1}), LiveState::kFault);
+}
+
+}  // namespace
+}  // namespace dampline::app
