@@ -2,6 +2,7 @@
 #include "app/live/notify.hpp"
 
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,7 +50,10 @@ Notifier::Notifier(const std::string& socket) {
   std::copy(socket.begin(), socket.end(), std::begin(address_.sun_path));
   if (socket[0] == '@') address_.sun_path[0] = '\0';
   address_bytes_ = static_cast<unsigned>(offsetof(sockaddr_un, sun_path) + socket.size());
-  file_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  file_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  // A manager whose queue is full is waited for, but not for long.
+  const timeval patience{.tv_sec = 0, .tv_usec = 500'000};
+  static_cast<void>(::setsockopt(file_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience));
 }
 
 Notifier::~Notifier() {
