@@ -2,14 +2,14 @@
 #include "app/verbs/simulate.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 
 #include "app/error.hpp"
+#include "app/verbs/simulate_files.hpp"
+#include "app/verbs/simulate_send.hpp"
 #include "app/verbs/text_file.hpp"
 #include "drivers/candump/line_writer.hpp"
 #include "sim_hw/writers.hpp"
@@ -70,36 +70,14 @@ void write_side_files(const SimulateOptions& options, const SimulatedRun& run) {
   write_text(options.config, identify_config_text(run, dbc));
 }
 
-/// A line on a terminal that shows how far the run is, at most once per percent.
-class Progress {
- public:
-  Progress(std::int64_t samples, bool quiet)
-      : step_(samples / 100 + 1), shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
-  void at(std::int64_t sample) const {
-    if (shown_ && sample % step_ == 0) fmt::print(stderr, "\rsimulate: {} %", sample / step_);
-  }
-  void end() const {
-    if (shown_) fmt::print(stderr, "\r");
-  }
-
- private:
-  std::int64_t step_;
-  bool shown_;
-};
-
 std::uint64_t write_record(const SimulateOptions& options, const SimulatedRun& run, bool csv) {
   TextFile record{options.out};
-  std::optional<TextFile> truth;
-  if (!options.truth.empty()) {
-    truth.emplace(options.truth);
-    const std::string head = sim::truth_header(run.simulation);
-    truth->buffer().append(head.data(), head.data() + head.size());
-  }
+  TruthFile truth{options.truth, run.simulation};
   if (csv) record.buffer().append(sim::kSampleHeader);
   sim::Simulation simulation{run.simulation};
   sim::SensorNodes nodes{run.nodes, run.simulation.seed};
   sim::Transport transport{run.transport, run.simulation.seed};
-  const Progress progress{run.samples, options.quiet};
+  const SimulateProgress progress{run.samples, options.quiet};
   std::uint64_t lines = 0;
   for (std::int64_t i = 0; i < run.samples; ++i) {
     const sim::SimulatedSample sample = simulation.next();
@@ -113,15 +91,12 @@ std::uint64_t write_record(const SimulateOptions& options, const SimulatedRun& r
       }
     }
     record.tick();
-    if (truth) {
-      sim::append_truth(truth->buffer(), sample);
-      truth->tick();
-    }
+    truth.append(sample);
     progress.at(i);
   }
   progress.end();
   record.close();
-  if (truth) truth->close();
+  truth.close();
   return lines;
 }
 
@@ -131,7 +106,12 @@ int simulate(const SimulateOptions& options) {
   const SimulatedRun run = make_simulated_run(options);
   const bool csv = writes_csv(options);
   check_files(options, run, csv);
+  check_sending(options);
   write_side_files(options, run);
+  if (!options.to.empty()) {
+    send_run(options, run);
+    return 0;
+  }
   const std::uint64_t lines = write_record(options, run, csv);
   if (!options.quiet) {
     fmt::print(stderr, "simulate: {:.6g} s, {} {} -> {}\n",

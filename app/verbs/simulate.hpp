@@ -37,6 +37,10 @@ struct SimulateOptions {
   std::string truth;                 ///< file for the truth, or nothing
   std::string dbc;                   ///< file for the DBC, or nothing
   std::string config;                ///< file for a configuration of `identify`, or nothing
+  std::string to;  ///< CAN interface to send on, instead of writing a record; or nothing
+  double speed{1.0};
+  bool asap{false};             ///< as fast as possible
+  std::int64_t batch_ticks{1};  ///< sample instants that are sent together
   bool quiet{false};
 };
 
@@ -55,7 +59,7 @@ struct SimulatedRun {
 /// configuration, empty for the project's own.
 [[nodiscard]] std::string identify_config_text(const SimulatedRun& run, const std::string& dbc);
 
-/// Simulates and writes the files. Returns 0; throws UsageError or RunError.
+/// Simulates and writes the files, or sends. Returns 0; throws UsageError or RunError.
 int simulate(const SimulateOptions& options);
 
 /// Registers the subcommand; when it is chosen, `action` becomes the call of simulate().

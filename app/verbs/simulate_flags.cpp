@@ -76,6 +76,16 @@ void add_file_flags(CLI::App& verb, SimulateOptions& options) {
   verb.add_flag("--quiet", options.quiet, "no summary on the standard error");
 }
 
+void add_sending_flags(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--to", options.to, "send on this CAN interface instead of writing a record");
+  verb.add_option("--speed", options.speed, "with --to: 2 is twice as fast as in reality")
+      ->capture_default_str();
+  verb.add_flag("--asap", options.asap, "with --to: as fast as possible");
+  verb.add_option("--batch", options.batch_ticks,
+                  "with --to: so many sample instants (1/300 s) together, when the last is due")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_simulate_verb(CLI::App& program, std::function<int()>& action) {
@@ -89,6 +99,7 @@ void add_simulate_verb(CLI::App& program, std::function<int()>& action) {
   add_car_flags(*verb, *options);
   add_sensor_flags(*verb, *options);
   add_file_flags(*verb, *options);
+  add_sending_flags(*verb, *options);
   verb->add_flag("--list-effects", *listing, "list the effects and their parameters, and end");
   verb->callback([options, listing, &action] {
     action = [options, listing] { return *listing ? list_effects() : simulate(*options); };

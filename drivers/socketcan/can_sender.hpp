@@ -42,7 +42,7 @@ class CanSender {
   static constexpr std::int64_t kPatienceNs = 100'000'000;
 
  private:
-  static constexpr std::size_t kMessages = 128;
+  static constexpr std::size_t kMessages = 1024;
   enum class Verdict : std::uint8_t { kRetry, kSkipOne, kGiveUp };
 
   CanSender(std::string interface, const hal::Clock& clock, SocketAttempt opened) noexcept;

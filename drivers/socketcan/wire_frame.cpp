@@ -8,6 +8,7 @@
 namespace dampline::drivers {
 namespace {
 
+constexpr std::uint8_t kFlags = 0x0F;  // as many as candump writes
 // CAN FD pads a payload to the next of these.
 constexpr std::array<std::uint8_t, 7> kLongLengths{12, 16, 20, 24, 32, 48, 64};
 
@@ -24,6 +25,7 @@ bool from_wire(const canfd_frame& wire, std::size_t bytes, CanFrame& frame) noex
   if (wire.len > (fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN)) return false;
   frame = CanFrame{};
   frame.fd = fd;
+  if (fd) frame.fd_flags = wire.flags & kFlags;
   frame.length = wire.len;
   frame.error = (wire.can_id & CAN_ERR_FLAG) != 0;
   frame.extended = !frame.error && (wire.can_id & CAN_EFF_FLAG) != 0;
@@ -41,6 +43,7 @@ std::size_t to_wire(const CanFrame& frame, canfd_frame& wire) noexcept {
   if (frame.extended) wire.can_id |= CAN_EFF_FLAG;
   if (frame.remote) wire.can_id |= CAN_RTR_FLAG;
   if (frame.error) wire.can_id |= CAN_ERR_FLAG;
+  if (frame.fd) wire.flags = frame.fd_flags & kFlags;
   wire.len = frame.fd ? padded_fd_length(frame.length) : frame.length;
   if (!frame.remote) std::copy_n(frame.data.begin(), frame.length, &wire.data[0]);
   return frame.fd ? CANFD_MTU : CAN_MTU;
