@@ -58,6 +58,9 @@ void SampleAssembler::restart(std::int64_t time_ns) noexcept {
   const ChannelLane& first = lanes_[0];
   if (aligned_) {
     settle(0);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      before_pause_[c] = lanes_[c].newest() - lane_offset_[c];
+    after_pause_ = true;
     next_tick_ = std::max(next_tick_,
                           static_cast<std::int64_t>(std::llround(first.line().tick_at(time_ns))));
   }
@@ -80,7 +83,10 @@ void SampleAssembler::align() noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     lane_offset_[c] = std::llround(lanes_[c].line().tick_at(now_ns) - tick_now);
     oldest = std::max(oldest, lanes_[c].oldest() - lane_offset_[c]);
+    const std::int64_t ticks = lanes_[c].first() - lane_offset_[c] - before_pause_[c] - 1;
+    if (after_pause_ && ticks > 0) counts_.channels[c].paused += static_cast<std::uint64_t>(ticks);
   }
+  after_pause_ = false;
   next_tick_ = oldest;
   aligned_ = true;
 }
@@ -151,7 +157,10 @@ bool SampleAssembler::pop(Sample& sample) noexcept {
 
 AssemblerCounts SampleAssembler::counts() const noexcept {
   AssemblerCounts all = counts_;
-  for (std::size_t c = 0; c < kChannels; ++c) all.channels[c] = lanes_[c].counts();
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    all.channels[c] = lanes_[c].counts();
+    all.channels[c].paused = counts_.channels[c].paused;
+  }
   return all;
 }
 

@@ -72,14 +72,16 @@ class SampleAssembler {
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 
   std::array<ChannelLane, kChannels> lanes_;
-  std::array<std::int64_t, kChannels> lane_offset_{};  // lane tick = tick + offset
+  std::array<std::int64_t, kChannels> lane_offset_{};   // lane tick = tick + offset
+  std::array<std::int64_t, kChannels> before_pause_{};  // newest tick, where there was a pause
   bool aligned_{false};
+  bool after_pause_{false};
   std::int64_t next_tick_{0};
   std::array<Sample, kReady> ready_{};
   std::size_t ready_first_{0};
   std::size_t ready_count_{0};
   RateMeter meter_;
-  AssemblerCounts counts_;  // channels are filled in by counts()
+  AssemblerCounts counts_;  // of its channels only `paused`; counts() fills in the rest
 };
 
 }  // namespace dampline

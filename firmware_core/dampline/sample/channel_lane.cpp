@@ -36,9 +36,10 @@ void ChannelLane::restart(std::int64_t first_tick) noexcept {
 bool ChannelLane::decode(const CanFrame& frame, Reading& reading, std::uint64_t& counter) noexcept {
   if (config_.multiplexed) {
     const Result<std::uint64_t> which = extract_bits(config_.multiplexor, frame);
-    if (which.ok() && which.value() != config_.multiplexor_value) return false;
     if (!which.ok()) ++counts_.wrong_length;
     if (!which.ok()) return false;
+    if (which.value() != config_.multiplexor_value) ++counts_.other_page;
+    if (which.value() != config_.multiplexor_value) return false;
   }
   const Result<std::int64_t> raw = extract_raw(config_.accel, frame);
   const Result<std::uint64_t> count = config_.has_counter ? extract_bits(config_.counter, frame)
@@ -77,9 +78,11 @@ void ChannelLane::push(const CanFrame& frame) noexcept {
 void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noexcept {
   const Placement placed = by_counter_.place(counter, reading.time_ns);
   reading.tick = placed.tick;
+  if (placed.streak <= 1) suspects_ = 0;
   switch (placed.place) {
     case Place::kRealigned:
       ++counts_.realigned;
+      counts_.misjudged += suspects_;
       [[fallthrough]];
     case Place::kNext:
       store_next(reading);
@@ -123,10 +126,15 @@ void ChannelLane::store_next(const Reading& reading) noexcept {
 void ChannelLane::store_late(const Reading& reading) noexcept {
   if (find(reading.tick) != nullptr) {
     ++counts_.repeated;
+    ++suspects_;
     return;
   }
   ++counts_.late;
-  if (reading.tick < first_tick_ || newest_ - reading.tick >= kKept) return;
+  if (reading.tick < first_tick_ || newest_ - reading.tick >= kKept) {
+    ++counts_.too_late;
+    ++suspects_;
+    return;
+  }
   kept_[slot_of(reading.tick)] = reading;
   ++counts_.readings;
   if (reading.saturated) ++counts_.saturated;

@@ -17,12 +17,16 @@ struct ChannelCounts {
   std::uint64_t gaps{0};          ///< jumps of the channel's own sequence
   std::uint64_t lost{0};          ///< ticks jumped over; those that came after all are in late
   std::uint64_t late{0};          ///< out of order; used when the instant was still open
+  std::uint64_t too_late{0};      ///< of the late: not a reading any more
   std::uint64_t repeated{0};      ///< the same counter (or instant) once more; ignored
   std::uint64_t out_of_step{0};   ///< counter contradicts time; ignored
   std::uint64_t realigned{0};     ///< node restarted its counter
+  std::uint64_t misjudged{0};     ///< of the repeated and too late: a restarted node's first frames
+  std::uint64_t paused{0};        ///< ticks of long pauses, by time; not among the lost
   std::uint64_t saturated{0};     ///< at full scale
   std::uint64_t wrong_length{0};  ///< too short for the signals; ignored
   std::uint64_t not_data{0};      ///< remote frames with this identifier; ignored
+  std::uint64_t other_page{0};    ///< the multiplexor selects other signals; ignored
 };
 
 /// One acceleration channel: recognises its frames, decodes and numbers them, and keeps the newest
@@ -50,6 +54,8 @@ class ChannelLane {
   [[nodiscard]] std::uint64_t since_start() const noexcept { return since_start_; }
   [[nodiscard]] std::int64_t oldest() const noexcept;
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
+  /// Since the start, or the restart.
+  [[nodiscard]] std::int64_t first() const noexcept { return first_tick_; }
   [[nodiscard]] const TickLine& line() const noexcept {
     return config_.has_counter ? by_counter_.line() : by_time_.line();
   }
@@ -74,6 +80,7 @@ class ChannelLane {
   std::int64_t first_tick_{0};
   std::int64_t newest_{0};
   std::uint64_t since_start_{0};
+  std::uint64_t suspects_{0};  // not used, and perhaps a restarted node's first frames
   ChannelCounts counts_;
 };
 

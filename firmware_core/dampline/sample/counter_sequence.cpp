@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dampline {
 namespace {
@@ -54,8 +55,7 @@ Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t 
   line_.update(tick, time_ns);
   newest_ = tick;
   newest_counter_ = counter;
-  streak_ = 0;
-  return {place, tick};
+  return {place, tick, std::exchange(streak_, 0)};
 }
 
 bool CounterSequence::continues_streak(std::uint64_t counter) const noexcept {
@@ -82,7 +82,7 @@ Placement CounterSequence::suspect(std::int64_t tick, std::uint64_t counter,
     return accept(Place::kRealigned, std::max(by_time, newest_ + 1), counter, time_ns);
   }
   const bool behind = tick <= newest_ && static_cast<double>(newest_ - tick) < kBurstTicks;
-  return {behind ? Place::kBehind : Place::kOutOfStep, tick};
+  return {behind ? Place::kBehind : Place::kOutOfStep, tick, streak_};
 }
 
 }  // namespace dampline

@@ -16,6 +16,7 @@ enum class Place : std::uint8_t {
 struct Placement {
   Place place{Place::kOutOfStep};
   std::int64_t tick{0};
+  int streak{0};  ///< frames in a row, this one included, that continue each other only
 };
 
 /// Ticks from a counter of any length. The counter decides; the time resolves how often it wrapped.
