@@ -5,7 +5,7 @@
 
 namespace dampline::app {
 
-EdgeEvents::EdgeEvents(std::vector<LineKind> kinds) {
+EdgeEvents::EdgeEvents(const std::vector<LineKind>& kinds) {
   lines_.reserve(kinds.size());
   for (const LineKind kind : kinds) lines_.push_back({.kind = kind});
 }

@@ -37,7 +37,7 @@ class EdgeEvents {
   static constexpr std::size_t kMostEvents = 3;  ///< of one edge
 
   /// One kind for each line of the source, in its order.
-  explicit EdgeEvents(std::vector<LineKind> kinds);
+  explicit EdgeEvents(const std::vector<LineKind>& kinds);
   /// The events of one edge, in their order. The view is good until the next call. A line that was
   /// not declared gives none.
   [[nodiscard]] std::span<const hal::Event> take(const hal::Edge& edge) noexcept;
