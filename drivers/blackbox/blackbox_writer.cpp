@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "drivers/blackbox/blackbox_writer.hpp"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <utility>
+
+namespace dampline::drivers {
+namespace {
+
+// Below this much space a file that is begun again would soon be full.
+constexpr std::uint64_t kWorthResuming = std::uint64_t{1} << 20U;
+
+bool may_be_cured_by_a_new_file(int error) noexcept {
+  return error != ENOSPC && error != EDQUOT && error != EROFS;
+}
+
+}  // namespace
+
+BlackboxWriter::BlackboxWriter(const BlackboxConfig& config, Handles handles, BlackboxShelf shelf,
+                               const BlackboxHeader& header)
+    : config_{config},
+      handles_{std::move(handles)},
+      shelf_{std::move(shelf)},
+      header_{header},
+      next_number_{shelf_.next_number()},
+      next_sequence_{shelf_.next_sequence()} {}
+
+BlackboxWriter::~BlackboxWriter() { finish_file(); }
+
+void BlackboxWriter::do_write(const CanFrame& frame) noexcept {
+  newest_ns_ = std::max(newest_ns_, frame.time_ns);
+  add(frame);
+}
+
+void BlackboxWriter::do_write(const hal::Event& event) noexcept {
+  newest_ns_ = std::max(newest_ns_, event.time_ns);
+  add(event);
+}
+
+template <class Record>
+void BlackboxWriter::add(const Record& record) noexcept {
+  if (make_ready()) {
+    put(record);
+  } else {
+    ++next_sequence_;
+    lose(1);
+  }
+}
+
+template <class Record>
+void BlackboxWriter::put(const Record& record) noexcept {
+  output_.append(record);
+  ++next_sequence_;
+}
+
+/// True: there is a file, and room in the buffer.
+bool BlackboxWriter::make_ready() noexcept {
+  if (!health_.recording) return false;
+  if (output_.is_open() && (output_.bytes() + kLongestRecord > config_.rotate_bytes ||
+                            output_.records() == std::numeric_limits<std::uint32_t>::max())) {
+    do_rotate();
+  } else if (output_.is_open() && !output_.has_room()) {
+    flush();
+  }
+  if (health_.recording && !output_.is_open()) return begin_file();
+  return health_.recording;
+}
+
+bool BlackboxWriter::begin_file() noexcept {
+  header_.file_number = next_number_++;
+  header_.first_sequence = next_sequence_;
+  header_.created_ns = newest_ns_;
+  if (const int error = output_.begin(handles_.directory, header_); error != 0) {
+    stop(error, 0);
+    return false;
+  }
+  ++health_.files;
+  ++health_.syncs;
+  health_.bytes += kRecordsAt;
+  began_ns_ = now_ns_;
+  if (std::exchange(rotated_, false)) {
+    put(hal::Event{newest_ns_, hal::EventKind::kFileRotated, 0,
+                   static_cast<std::int64_t>(next_sequence_)});
+  }
+  return true;
+}
+
+void BlackboxWriter::do_tick(std::int64_t monotonic_ns) noexcept {
+  now_ns_ = monotonic_ns;
+  if (!std::exchange(ticked_, true)) {
+    began_ns_ = now_ns_;
+    synced_ns_ = now_ns_;
+    retry_at_ns_ = now_ns_;
+  }
+  if (!health_.recording && (now_ns_ < retry_at_ns_ || !resume())) return;
+  if (!output_.is_open()) return;
+  flush();
+  if (output_.is_open() && now_ns_ - synced_ns_ >= config_.sync_interval_ns) {
+    synced_ns_ = now_ns_;
+    if (output_.dirty()) sync();
+    keep_limits();
+  }
+  if (output_.is_open() && now_ns_ - began_ns_ >= config_.rotate_ns) do_rotate();
+}
+
+void BlackboxWriter::do_rotate() noexcept {
+  const bool was_open = output_.is_open();
+  finish_file();
+  rotated_ = rotated_ || (was_open && health_.recording && !output_.is_open());
+}
+
+void BlackboxWriter::do_close() noexcept { finish_file(); }
+
+void BlackboxWriter::finish_file() noexcept {
+  const std::uint32_t number = output_.number();
+  if (!output_.is_open()) return;
+  sync();
+  if (!output_.is_open() || output_.number() != number) return;  // it failed
+  shelf_.add(number, output_.bytes(), header_.created_ns);
+  output_.end();
+  keep_limits();
+}
+
+void BlackboxWriter::flush() noexcept {
+  const int error = output_.flush();
+  take_counts();
+  if (error != 0) fail(error, false);
+}
+
+void BlackboxWriter::sync() noexcept {
+  flush();
+  if (!output_.is_open() || !output_.dirty()) return;
+  const int error = output_.sync();
+  if (error == 0) {
+    ++health_.syncs;
+    return;
+  }
+  ++health_.failed_syncs;
+  fail(error, true);
+}
+
+void BlackboxWriter::take_counts() noexcept {
+  const RecordCount written = output_.take_written();
+  health_.frames += written.frames;
+  health_.events += written.events;
+  health_.bytes += written.bytes;
+}
+
+/// A write or sync failed, which is final for the file.
+void BlackboxWriter::fail(int error, bool sync_failed) noexcept {
+  const std::uint64_t lost = output_.abandon(handles_.directory, sync_failed);
+  if (output_.bytes() > kRecordsAt)
+    shelf_.add(output_.number(), output_.bytes(), header_.created_ns);
+  stop(error, lost);
+  if (may_be_cured_by_a_new_file(error)) static_cast<void>(resume());
+}
+
+void BlackboxWriter::stop(int error, std::uint64_t lost) noexcept {
+  health_.last_errno = error;
+  health_.recording = false;
+  stopped_errno_ = error;
+  stopped_ns_ = newest_ns_;
+  retry_at_ns_ = now_ns_ + config_.retry_ns;
+  rotated_ = false;
+  lost_since_stop_ = 0;
+  lose(lost);
+}
+
+void BlackboxWriter::lose(std::uint64_t records) noexcept {
+  health_.lost += records;
+  lost_since_stop_ += records;
+}
+
+bool BlackboxWriter::resume() noexcept {
+  const std::int64_t stopped_ns = stopped_ns_;
+  const std::uint64_t lost = lost_since_stop_;
+  const int error = stopped_errno_;
+  retry_at_ns_ = now_ns_ + config_.retry_ns;
+  if (!has_space(kWorthResuming)) return false;
+  health_.recording = true;
+  if (!begin_file()) {  // stops again; the outage is still the same one
+    stopped_ns_ = stopped_ns;
+    stopped_errno_ = error;
+    lost_since_stop_ = lost;
+    return false;
+  }
+  put(hal::Event{stopped_ns, hal::EventKind::kRecordingStopped, 0, error});
+  put(hal::Event{newest_ns_, hal::EventKind::kRecordingResumed, 0,
+                 static_cast<std::int64_t>(lost)});
+  return true;
+}
+
+void BlackboxWriter::keep_limits() noexcept {
+  const std::uint64_t current = output_.is_open() ? output_.bytes() : 0;
+  health_.files_removed +=
+      shelf_.trim(handles_.directory, {config_.keep_bytes, config_.keep_ns}, current,
+                  output_.is_open() ? header_.created_ns : newest_ns_, newest_ns_);
+  if (output_.is_open() && !has_space(0)) {
+    finish_file();
+    if (health_.recording && !output_.is_open()) stop(ENOSPC, 0);
+  }
+}
+
+bool BlackboxWriter::has_space(std::uint64_t beyond_reserve) const noexcept {
+  struct statvfs space {};
+  if (::fstatvfs(handles_.directory, &space) != 0) return true;
+  return space.f_bavail * space.f_frsize >= config_.reserve_free_bytes + beyond_reserve;
+}
+
+}  // namespace dampline::drivers

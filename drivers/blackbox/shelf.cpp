@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "drivers/blackbox/shelf.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include "drivers/blackbox/file_names.hpp"
+#include "drivers/blackbox/file_reader.hpp"
+
+namespace dampline::drivers {
+namespace {
+
+using Opened = BlackboxFileReader::Opened;
+
+constexpr std::uint64_t kTailBytes = std::uint64_t{1} << 20U;
+constexpr std::size_t kUsualFiles = 4096;  // so that rotation seldom allocates
+
+/// The sequence behind the last whole record of a file; nothing when it cannot be read.
+std::optional<std::uint64_t> end_of(BlackboxFileReader& reader, const char* path) {
+  for (const bool tail_only : {true, false}) {
+    if (reader.open(path) != Opened::kOpen) return std::nullopt;
+    if (tail_only) reader.skip_to_tail(kTailBytes);
+    BlackboxRecord record;
+    std::optional<std::uint64_t> end;
+    while (reader.next(record) == BlackboxFileReader::Status::kRecord)
+      end = reader.header().first_sequence + record.number + 1;
+    if (end) return end;
+  }
+  return reader.header().first_sequence;
+}
+
+}  // namespace
+
+Outcome<BlackboxShelf> BlackboxShelf::scan(const std::filesystem::path& directory) {
+  std::error_code error;
+  const std::vector<BlackboxEntry> found = list_blackbox(directory, error);
+  if (error) {
+    return Failure{Errc::kIo,
+                   fmt::format("{}: cannot be listed: {}", directory.string(), error.message())};
+  }
+  BlackboxShelf shelf;
+  shelf.files_.reserve(std::max(kUsualFiles, 2 * found.size()));
+  BlackboxFileReader reader;
+  std::int64_t created_ns = 0;
+  for (const BlackboxEntry& file : found) {
+    const Opened opened = reader.open(file.path.c_str());
+    if (opened == Opened::kOtherVersion) {
+      return Failure{Errc::kMismatch,
+                     fmt::format("{}: is of format version {}, this program writes {}; expected an "
+                                 "empty directory or one of this version",
+                                 file.path.string(), reader.header().version, kBlackboxVersion)};
+    }
+    if (opened == Opened::kOpen) created_ns = reader.header().created_ns;
+    shelf.add(file.number, file.bytes, created_ns);
+  }
+  if (!found.empty()) shelf.next_number_ = found.back().number + 1;
+  for (auto file = found.rbegin(); file != found.rend(); ++file) {
+    const auto end = end_of(reader, file->path.c_str());
+    if (!end) continue;
+    shelf.next_sequence_ = *end;
+    break;
+  }
+  return shelf;
+}
+
+void BlackboxShelf::add(std::uint32_t number, std::uint64_t bytes, std::int64_t created_ns) {
+  files_.push_back({number, bytes, created_ns});
+  bytes_ += bytes;
+}
+
+bool BlackboxShelf::oldest_is_due(const Retention& retention, std::uint64_t current_bytes,
+                                  std::int64_t current_created_ns,
+                                  std::int64_t now_ns) const noexcept {
+  if (files_.empty()) return false;
+  if (retention.keep_bytes > 0 && bytes_ + current_bytes > retention.keep_bytes) return true;
+  // A file's records are older than the next file.
+  const std::int64_t end_ns = files_.size() > 1 ? files_[1].created_ns : current_created_ns;
+  return retention.keep_ns > 0 && end_ns < now_ns - retention.keep_ns;
+}
+
+std::uint64_t BlackboxShelf::trim(int directory, const Retention& retention,
+                                  std::uint64_t current_bytes, std::int64_t current_created_ns,
+                                  std::int64_t now_ns) noexcept {
+  std::uint64_t removed = 0;
+  while (oldest_is_due(retention, current_bytes, current_created_ns, now_ns)) {
+    const std::string name = blackbox_file_name(files_.front().number);
+    if (::unlinkat(directory, name.c_str(), 0) == 0) ++removed;
+    bytes_ -= files_.front().bytes;
+    files_.erase(files_.begin());
+  }
+  return removed;
+}
+
+}  // namespace dampline::drivers
