@@ -9,6 +9,7 @@
 #include "app/identify/event_list.hpp"
 #include "app/identify/frame_counts.hpp"
 #include "app/identify/sample_feed.hpp"
+#include "drivers/blackbox/blackbox_source.hpp"
 #include "drivers/candump/candump_source.hpp"
 
 namespace dampline::app {
@@ -17,10 +18,11 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr std::chrono::milliseconds kPatience{100};
 
+/// `Source` is a hal::FrameSource that explains its errors.
+template <class Source>
 class CanFeed final : public SampleFeed {
  public:
-  CanFeed(const Config& config, std::unique_ptr<drivers::CandumpSource> source,
-          const AssemblerConfig& assembler)
+  CanFeed(const Config& config, std::unique_ptr<Source> source, const AssemblerConfig& assembler)
       : dbc_{config.input.can.dbc},
         source_{std::move(source)},
         wanted_{assembler.channels},
@@ -48,7 +50,10 @@ class CanFeed final : public SampleFeed {
       screen.step_mps2[c] = std::fabs(wanted_[c].accel.scale);
     return screen;
   }
-  [[nodiscard]] std::uint64_t lines() const override { return source_->line_number(); }
+  [[nodiscard]] std::uint64_t lines() const override {
+    if constexpr (requires { source_->line_number(); }) return source_->line_number();
+    return 0;
+  }
   [[nodiscard]] std::vector<InputFile> extra_inputs() const override {
     if (dbc_.empty()) return {};
     return {describe_input(dbc_, "dbc")};
@@ -71,7 +76,7 @@ class CanFeed final : public SampleFeed {
   }
 
   std::string dbc_;
-  std::unique_ptr<drivers::CandumpSource> source_;
+  std::unique_ptr<Source> source_;
   std::array<ChannelConfig, kChannels> wanted_;
   std::unique_ptr<SampleAssembler> assembler_;
   std::array<CanFrame, kBatch> frames_{};
@@ -87,7 +92,18 @@ std::unique_ptr<SampleFeed> open_can_feed(const Config& config, const SourceOpti
   if (!config.input.can.interface.empty()) candump.interfaces = {config.input.can.interface};
   auto opened = drivers::CandumpSource::open(candump);
   if (!opened.ok()) throw RunError{opened.error_text()};
-  return std::make_unique<CanFeed>(config, std::move(opened.value()), assembler);
+  return std::make_unique<CanFeed<drivers::CandumpSource>>(config, std::move(opened.value()),
+                                                           assembler);
+}
+
+std::unique_ptr<SampleFeed> open_blackbox_feed(const Config& config, const SourceOptions& source) {
+  const AssemblerConfig assembler = can_channels(config);
+  drivers::BlackboxSourceConfig blackbox{source.path, {}};
+  if (!config.input.can.interface.empty()) blackbox.interfaces = {config.input.can.interface};
+  auto opened = drivers::BlackboxSource::open(blackbox);
+  if (!opened.ok()) throw RunError{opened.error_text()};
+  return std::make_unique<CanFeed<drivers::BlackboxSource>>(config, std::move(opened.value()),
+                                                            assembler);
 }
 
 }  // namespace dampline::app

@@ -3,13 +3,28 @@
 
 #include <fmt/format.h>
 
+#include "dampline/sample/ledger.hpp"
+
 namespace dampline::app {
 
 void describe_frames(const hal::SourceHealth& health, const AssemblerCounts& counts,
                      RunResult& result) {
+  const FrameLedger ledger = ledger_of(counts, health.dropped);
   result.counts.insert(result.counts.end(), {{"frames", health.frames},
-                                             {"frames_foreign", counts.foreign},
-                                             {"frames_dropped", health.dropped},
+                                             {"frames_sent", ledger.sent},
+                                             {"frames_processed", ledger.processed},
+                                             {"frames_dropped", ledger.kernel_drops},
+                                             {"frames_missing", ledger.gaps},
+                                             {"frames_excluded", ledger.excluded},
+                                             {"frames_error", ledger.error},
+                                             {"frames_foreign", ledger.foreign},
+                                             {"frames_repeated", ledger.repeated},
+                                             {"frames_late", ledger.too_late},
+                                             {"frames_out_of_step", ledger.out_of_step},
+                                             {"frames_wrong_length", ledger.wrong_length},
+                                             {"frames_not_data", ledger.not_data},
+                                             {"frames_other_page", ledger.other_page},
+                                             {"frames_without_partner", ledger.without_partner},
                                              {"frames_reordered", health.reordered},
                                              {"lines_malformed", health.malformed},
                                              {"lines_ignored", health.ignored},

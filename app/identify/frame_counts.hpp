@@ -9,7 +9,9 @@
 
 namespace dampline::app {
 
-/// Adds what became of the frames: counts, and warnings where input was cut off or skipped.
+/// Adds what became of the frames: frames_sent = frames_processed + frames_dropped +
+/// frames_missing + frames_excluded, and the parts of the last; warnings where input was cut off or
+/// skipped.
 void describe_frames(const hal::SourceHealth& health, const AssemblerCounts& counts,
                      RunResult& result);
 

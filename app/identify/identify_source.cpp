@@ -44,11 +44,17 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, Tru
   }
 }
 
+std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
+                                      SourceKind kind) {
+  if (kind == SourceKind::kCandump) return open_can_feed(config, source);
+  if (kind == SourceKind::kBlackbox) return open_blackbox_feed(config, source);
+  return open_csv_feed(config, source);
+}
+
 Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
                           bool show_progress) {
   static_cast<void>(identifier_config(config));  // wrong settings before a wrong source
-  const auto feed =
-      kind == SourceKind::kCandump ? open_can_feed(config, source) : open_csv_feed(config, source);
+  const auto feed = open_feed(config, source, kind);
   TruckRun run{config, feed->screen()};
   pump(*feed, source, show_progress, run);
   if (run.empty())
@@ -82,8 +88,8 @@ InputFile describe_record(const std::string& path) {
 
 }  // namespace
 
-Identified identify_source(const Config& config, const SourceOptions& source, bool show_progress) {
-  const SourceKind kind = detect_source(config, source);
+Identified identify_source(const Config& config, const SourceOptions& source, SourceKind kind,
+                           bool show_progress) {
   // Beside the identification, so that a checksum costs no time.
   auto record = std::async(std::launch::async, describe_record, source.path);
   Identified out = kind == SourceKind::kRigCsv

@@ -5,6 +5,7 @@
 
 #include "app/config/config.hpp"
 #include "app/identify/sample_feed.hpp"
+#include "app/identify/source_kind.hpp"
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
 
@@ -16,9 +17,9 @@ struct Identified {
   std::vector<InputFile> inputs;
 };
 
-/// Opens a record, whatever its kind, and identifies it. Throws RunError or UsageError; there is no
-/// partial result.
+/// Opens a record, live interfaces excepted, and identifies it. Throws RunError or UsageError;
+/// there is no partial result.
 [[nodiscard]] Identified identify_source(const Config& config, const SourceOptions& source,
-                                         bool show_progress);
+                                         SourceKind kind, bool show_progress);
 
 }  // namespace dampline::app

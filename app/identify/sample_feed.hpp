@@ -46,6 +46,9 @@ struct SourceOptions {
 /// CAN frames of a candump log, decoded through the DBC file of the configuration.
 [[nodiscard]] std::unique_ptr<SampleFeed> open_can_feed(const Config& config,
                                                         const SourceOptions& source);
+/// CAN frames as a live run recorded them.
+[[nodiscard]] std::unique_ptr<SampleFeed> open_blackbox_feed(const Config& config,
+                                                             const SourceOptions& source);
 /// Rows of a CSV file with a truck's three accelerations.
 [[nodiscard]] std::unique_ptr<SampleFeed> open_csv_feed(const Config& config,
                                                         const SourceOptions& source);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <net/if.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,9 @@
 #include <string>
 
 #include "app/error.hpp"
+#include "drivers/blackbox/file_names.hpp"
 #include "drivers/csv/csv_reader.hpp"
+#include "drivers/socketcan/can_link.hpp"
 
 namespace dampline::app {
 namespace {
@@ -29,12 +32,20 @@ void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
-    fail(path,
-         "no such file; a source is a candump log, a CSV file, or - for candump text on standard "
-         "input");
-  if (std::filesystem::is_directory(status)) fail(path, "is a directory, expected a record");
+    fail(path, fmt::format(
+                   "no such file and no such CAN interface ({}); a source is an interface, a "
+                   "candump log, a CSV file, a black box, or - for candump text on standard input",
+                   drivers::links_text()));
+  if (std::filesystem::is_directory(status))
+    fail(path, "is a directory without a black box, expected a record");
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0)
     fail(path, "is empty");
+}
+
+/// A file of that name goes first: it can be moved away, an interface cannot.
+bool is_interface(const std::string& path) {
+  std::error_code error;
+  return !std::filesystem::exists(path, error) && ::if_nametoindex(path.c_str()) != 0;
 }
 
 /// A line that begins like one of candump's: "(".
@@ -73,6 +84,8 @@ SourceKind detect_columns(const InputConfig& input, const std::string& path) {
 
 SourceKind detect_source(const Config& config, const SourceOptions& source) {
   if (source.path == "-") return SourceKind::kCandump;
+  if (is_interface(source.path)) return SourceKind::kInterface;
+  if (drivers::is_blackbox(source.path)) return SourceKind::kBlackbox;
   check_exists(source.path);
   const std::string suffix = std::filesystem::path{source.path}.extension().string();
   if (suffix == ".log") return SourceKind::kCandump;

@@ -8,9 +8,11 @@
 namespace dampline::app {
 
 enum class SourceKind : std::uint8_t {
-  kCandump,   ///< frames of a truck's sensors
-  kTruckCsv,  ///< three accelerations
-  kRigCsv,    ///< deflection and force
+  kCandump,    ///< frames of a truck's sensors
+  kBlackbox,   ///< the same, as a live run recorded them
+  kInterface,  ///< a CAN interface, live
+  kTruckCsv,   ///< three accelerations
+  kRigCsv,     ///< deflection and force
 };
 
 /// What a source holds, by its suffix and content. Throws RunError naming what was found and what

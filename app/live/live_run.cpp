@@ -14,8 +14,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kTurn{100};
-constexpr std::int64_t kStallNs = 5'000'000'000;
+constexpr std::chrono::milliseconds kTurn{60};  // often enough for the lamp's patterns
 
 AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const LiveOptions& options) {
   AcquisitionConfig config;
@@ -60,6 +59,7 @@ Identified LiveRun::run() {
   acquisition.join();
   acquisition_->finish();
   note(hal::EventKind::kRunEnd, static_cast<std::int64_t>(parts_.source->health().frames));
+  if (outlets_.end) outlets_.end();
   recorder_.stop();
   return conclude();
 }
@@ -81,16 +81,20 @@ void LiveRun::watch(const Signals& signals) {
   while (!acquisition_->ended()) {
     const SignalSeen seen = signals.wait(kTurn);
     if (seen == SignalSeen::kStop) return;
-    if (seen == SignalSeen::kRotate) recorder_.rotate();
+    if (seen == SignalSeen::kRotate) rotate();
     const std::int64_t now_ns = parts_.clock->monotonic_ns();
     const Condition condition = monitor_.look(recorder_.health(), now_ns);
     state_ = judge(condition);
     silence_ns_ = condition.silence_ns;
-    if (outlets_.turn) outlets_.turn(state_, now_ns);
-    if (outlets_.alive && monitor_.stall_ns(now_ns) < kStallNs) outlets_.alive();
+    if (outlets_.turn) outlets_.turn(state_, acquisition_->heartbeats(), now_ns);
     publish_when_fresh();
     if (options_.duration_s > 0.0 && now_ns >= end_ns) return;
   }
+}
+
+void LiveRun::rotate() {
+  recorder_.rotate();
+  if (outlets_.rotated) outlets_.rotated();
 }
 
 void LiveRun::publish_when_fresh() {

@@ -34,10 +34,13 @@ struct LiveParts {
 
 /// What the main thread tells the world; each is called from the thread that called run().
 struct LiveOutlets {
-  std::function<void(const RunResult&)> publish{};      ///< every publish_every_s
-  std::function<void(LiveState, std::int64_t)> turn{};  ///< some times a second; monotonic
-  std::function<void()> alive{};                        ///< while the acquisition comes round
-  std::function<void(Recorder&)> begin{};               ///< the threads run
+  std::function<void(Recorder&)> begin{};           ///< the threads run
+  std::function<void(const RunResult&)> publish{};  ///< every publish_every_s
+  /// Some times a second: the state, how often the acquisition's loop has come round, and now
+  /// (monotonic, ns).
+  std::function<void(LiveState, std::uint64_t, std::int64_t)> turn{};
+  std::function<void()> rotated{};  ///< after SIGHUP
+  std::function<void()> end{};      ///< the recorder is about to go
 };
 
 /// Identification of a live bus: an acquisition thread that must keep up, a writer's thread that
@@ -53,6 +56,7 @@ class LiveRun {
  private:
   void acquire();
   void watch(const Signals& signals);
+  void rotate();
   void publish_when_fresh();
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();

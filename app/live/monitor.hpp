@@ -12,12 +12,11 @@ namespace dampline::app {
 class Monitor {
  public:
   Monitor(const Acquisition& acquisition, std::int64_t monotonic_ns)
-      : acquisition_{acquisition}, sample_ns_{monotonic_ns}, beat_ns_{monotonic_ns} {}
+      : acquisition_{acquisition}, sample_ns_{monotonic_ns} {}
 
   /// Call some times a second.
   Condition look(const hal::RecordHealth& record, std::int64_t monotonic_ns) noexcept {
     note(acquisition_.samples(), samples_, sample_ns_, monotonic_ns);
-    note(acquisition_.heartbeats(), beats_, beat_ns_, monotonic_ns);
     note(acquisition_.frames_dropped() + acquisition_.items().lost() + record.lost, losses_,
          loss_ns_, monotonic_ns);
     return {.any_sample = samples_ > 0,
@@ -25,11 +24,6 @@ class Monitor {
             .recording = record.recording,
             .lost_lately = losses_ > 0 && monotonic_ns - loss_ns_ < kLatelyNs,
             .silence_ns = monotonic_ns - sample_ns_};
-  }
-  /// How long the acquisition's loop has not come round: what the watchdog judges. Waiting for a
-  /// signal is coming round.
-  [[nodiscard]] std::int64_t stall_ns(std::int64_t monotonic_ns) const noexcept {
-    return monotonic_ns - beat_ns_;
   }
 
  private:
@@ -41,10 +35,8 @@ class Monitor {
   }
   const Acquisition& acquisition_;
   std::uint64_t samples_{0};
-  std::uint64_t beats_{0};
   std::uint64_t losses_{0};
   std::int64_t sample_ns_;
-  std::int64_t beat_ns_;
   std::int64_t loss_ns_{0};
 };
 

@@ -27,7 +27,7 @@ constexpr std::array<Entry, 13> kParameters{{
     {"noise", "sensor noise of one channel, rms"},
 }};
 
-constexpr std::array<Entry, 20> kCounts{{
+constexpr std::array<Entry, 32> kCounts{{
     {"samples", "samples read"},
     {"gaps", "gaps in the sequence"},
     {"lost", "samples lost in the gaps"},
@@ -42,8 +42,20 @@ constexpr std::array<Entry, 20> kCounts{{
     {"rows", "equations used"},
     {"rows_still", "equations left out: too little motion"},
     {"frames", "CAN frames read"},
-    {"frames_dropped", "CAN frames known to be lost"},
-    {"frames_foreign", "CAN frames of others"},
+    {"frames_sent", "CAN frames that were sent, as their counters tell"},
+    {"frames_processed", "of these: became part of a sample"},
+    {"frames_dropped", "of these: dropped by the kernel, for want of room"},
+    {"frames_missing", "of these: never arrived"},
+    {"frames_excluded", "of these: arrived and were not used, for the reasons below"},
+    {"frames_error", "error frames of the bus"},
+    {"frames_foreign", "of other senders"},
+    {"frames_repeated", "came twice"},
+    {"frames_late", "came too late"},
+    {"frames_out_of_step", "their counter contradicts their time"},
+    {"frames_wrong_length", "too short for their signals"},
+    {"frames_not_data", "remote requests"},
+    {"frames_other_page", "another page of a multiplexed message"},
+    {"frames_without_partner", "another channel's frame of that instant is missing"},
     {"incomplete", "instants that lacked a channel"},
     {"restarts", "long pauses after which the channels were aligned anew"},
     {"lines_malformed", "malformed lines, skipped on request"},

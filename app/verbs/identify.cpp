@@ -11,7 +11,9 @@
 #include <string>
 
 #include "app/config/config.hpp"
+#include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
+#include "app/live/identify_live.hpp"
 #include "app/report/page.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
@@ -30,6 +32,10 @@ struct Options {
   bool quiet{false};
   bool force{false};
   bool no_report{false};
+  LiveOptions live;
+  std::string blackbox;
+  bool no_blackbox{false};
+  bool any_live_flag{false};
 };
 
 void warn(const std::string& text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
@@ -57,13 +63,39 @@ void print_result(const Options& options, const RunResult& result,
              (options.no_report ? place : place / "report.html").string());
 }
 
+void check_live_flags(const Options& options, SourceKind kind) {
+  if (options.any_live_flag && kind != SourceKind::kInterface)
+    throw UsageError{
+        fmt::format("{}: is a record; --duration, --publish-every, --blackbox, --no-blackbox and "
+                    "--realtime-priority are for an interface",
+                    options.source.path)};
+  if (options.no_blackbox && !options.blackbox.empty())
+    throw UsageError{"--blackbox and --no-blackbox exclude each other"};
+}
+
+std::filesystem::path blackbox_of(const Options& options, const std::filesystem::path& place) {
+  if (options.no_blackbox) return {};
+  return options.blackbox.empty() ? place / "blackbox" : std::filesystem::path{options.blackbox};
+}
+
+/// A record, or a live interface until it ends.
+Identified find(const Options& options, const Config& config, SourceKind kind,
+                const std::filesystem::path& place) {
+  const bool progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  if (kind != SourceKind::kInterface)
+    return identify_source(config, options.source, kind, progress);
+  return identify_live(config, options.source.path, options.live,
+                       {place, blackbox_of(options, place), progress});
+}
+
 int identify(const Options& options) {
   const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  const SourceKind kind = detect_source(config, options.source);
+  check_live_flags(options, kind);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place,
                          options.force};  // first: a place that cannot be written costs no work
-  const bool progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  Identified found = identify_source(config, options.source, progress);
+  Identified found = find(options, config, kind, place);
   const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
                        std::move(found.state)};
   stage_files(files, directory);
@@ -73,14 +105,38 @@ int identify(const Options& options) {
   return 0;
 }
 
+void add_live_flags(CLI::App& verb, Options& options) {
+  constexpr double kHundredYearsS = 3.2e9;
+  LiveOptions& live = options.live;
+  const std::string group = "Live (SOURCE is an interface)";
+  for (CLI::Option* option :
+       {verb.add_option("--duration", live.duration_s, "end after this time in s; 0: on a signal")
+            ->check(CLI::Range(0.0, kHundredYearsS)),
+        verb.add_option("--publish-every", live.publish_every_s,
+                        "s between two versions of live.json")
+            ->check(CLI::Range(0.1, kHundredYearsS))
+            ->capture_default_str(),
+        verb.add_option("--blackbox", options.blackbox,
+                        "record frames and events here; default: blackbox in the run directory"),
+        verb.add_flag("--no-blackbox", options.no_blackbox, "record nothing"),
+        verb.add_option("--realtime-priority", live.realtime_priority,
+                        "SCHED_FIFO priority of the acquisition, 1 to 99; 0: ordinary scheduling")
+            ->check(CLI::Range(0, 99))
+            ->capture_default_str()})
+    option->group(group)->each([&options](const std::string&) { options.any_live_flag = true; });
+}
+
 }  // namespace
 
 void add_identify_verb(CLI::App& program, std::function<int()>& action) {
   CLI::App* verb = program.add_subcommand(
-      "identify", "Turn a recorded run into a damping curve with its uncertainty");
+      "identify",
+      "Turn a recorded run, or a live CAN bus, into a damping curve with its "
+      "uncertainty");
   const auto options = std::make_shared<Options>();
   verb->add_option("SOURCE", options->source.path,
-                   "FILE.log (candump), FILE.csv, or - for candump text on standard input")
+                   "an interface (can0, vcan0), FILE.log (candump), FILE.csv, a black box, or - "
+                   "for candump text on standard input")
       ->required();
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "
@@ -93,6 +149,7 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--skip-bad-lines", options->source.skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
   verb->add_flag("--no-report", options->no_report, "do not draw report.html");
+  add_live_flags(*verb, *options);
   verb->callback([options, &action] { action = [options] { return identify(*options); }; });
 }
 

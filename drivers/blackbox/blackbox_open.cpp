@@ -49,7 +49,8 @@ Outcome<BlackboxHeader> header_of(const BlackboxConfig& config) {
                    fmt::format("{}: expected files of {} bytes at least and times above 0", where,
                                kLeastRotateBytes)};
   }
-  if (::getrandom(&header.run_id, sizeof(header.run_id), 0) != sizeof(header.run_id))
+  // Insecure is good enough to tell runs apart, and does not wait for entropy after a boot.
+  if (::getrandom(&header.run_id, sizeof(header.run_id), GRND_INSECURE) != sizeof(header.run_id))
     return Failure{Errc::kIo, fmt::format("{}: no random number: {}", where, reason(errno))};
   return header;
 }

@@ -143,7 +143,7 @@ TEST_F(LiveRunTest, EndsAfterItsDurationAndPublishesOnTheWay) {
   const Identified found =
       run(source, {.duration_s = 5.0, .publish_every_s = 0.5, .realtime_priority = 0},
           {.publish = [&](const RunResult& r) { published.push_back(r); },
-           .turn = [&](LiveState s, std::int64_t) { states.push_back(s); }});
+           .turn = [&](LiveState s, std::uint64_t, std::int64_t) { states.push_back(s); }});
   ASSERT_GE(published.size(), 2U);
   EXPECT_EQ(published.back().parameters.at(0).name, "coulomb");
   EXPECT_GT(published.back().live->lateness_max_us, 0.0);
@@ -158,7 +158,7 @@ TEST_F(LiveRunTest, StopsOnASignalAndRotatesOnAnother) {
   Silent source{std::make_unique<Paced>(simulated())};
   int turns = 0;
   const Identified found =
-      run(source, {.realtime_priority = 0}, {.turn = [&](LiveState, std::int64_t) {
+      run(source, {.realtime_priority = 0}, {.turn = [&](LiveState, std::uint64_t, std::int64_t) {
             if (++turns == 3) ::raise(SIGHUP);
             if (turns == 30) ::raise(SIGTERM);
           }});

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "app/live/digital_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <string_view>
+#include <vector>
+
+#include "app/error.hpp"
+#include "drivers/gpiod/gpiod.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{200};
+constexpr std::string_view kEdgeForm = "pulse:LINE, marker:LINE or wheel:LINE, with :active_low";
+constexpr std::string_view kLampForm = "LINE or LINE:active_low";
+
+std::string_view next_part(std::string_view& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view part = text.substr(0, colon);
+  text.remove_prefix(std::min(colon + 1, text.size()));
+  return part;
+}
+
+/// LINE or LINE:active_low. False when it is neither.
+bool read_line(std::string_view text, LineSetting& setting) {
+  const std::string_view number = next_part(text);
+  const auto [end, error] =
+      std::from_chars(number.data(), number.data() + number.size(), setting.offset);
+  if (error != std::errc{} || end != number.data() + number.size()) return false;
+  setting.active_low = text == "active_low";
+  return text.empty() || setting.active_low;
+}
+
+[[noreturn]] void fail(std::string_view key, const std::string& text, std::string_view expected) {
+  throw UsageError{fmt::format("[gpio] {}: found \"{}\", expected {}", key, text, expected)};
+}
+
+LampState lamp_state(LiveState state) noexcept {
+  switch (state) {
+    case LiveState::kIdentifying:
+      return LampState::kIdentifying;
+    case LiveState::kWaiting:
+    case LiveState::kDegraded:
+      return LampState::kDegraded;
+    case LiveState::kFault:
+      return LampState::kFault;
+  }
+  return LampState::kOff;
+}
+
+}  // namespace
+
+LineSetting parse_edge_line(const std::string& text) {
+  constexpr std::array<std::pair<std::string_view, LineKind>, 3> kKinds{
+      {{"pulse", LineKind::kPulsePerSecond},
+       {"marker", LineKind::kMarker},
+       {"wheel", LineKind::kWheel}}};
+  std::string_view rest = text;
+  const std::string_view word = next_part(rest);
+  for (const auto& [name, kind] : kKinds) {
+    LineSetting setting;
+    setting.kind = kind;
+    if (word == name && read_line(rest, setting)) return setting;
+  }
+  fail("edges", text, kEdgeForm);
+}
+
+LineSetting parse_lamp_line(const std::string& text) {
+  LineSetting setting;
+  if (!read_line(text, setting)) fail("lamp", text, kLampForm);
+  return setting;
+}
+
+DigitalLines::DigitalLines(const GpioConfig& config, const hal::RunTime& run_time) {
+  const bool wanted = !config.edges.empty() || !config.lamp.empty();
+  if (wanted && config.chip.empty())
+    throw UsageError{"[gpio] chip: found none, expected one, since edges or a lamp are named"};
+  if (wanted) open_lines(config, run_time);
+}
+
+void DigitalLines::open_lines(const GpioConfig& config, const hal::RunTime& run_time) {
+  drivers::EdgeConfig wanted;
+  wanted.chip = config.chip;
+  wanted.run_time = run_time;
+  std::vector<LineKind> kinds;
+  for (const std::string& text : config.edges) {
+    const LineSetting line = parse_edge_line(text);
+    const bool both = line.kind == LineKind::kMarker;
+    wanted.lines.push_back({line.offset, line.active_low, true, both});
+    kinds.push_back(line.kind);
+  }
+  if (!kinds.empty()) {
+    auto opened = drivers::open_edges(wanted);
+    if (!opened.ok()) throw RunError{opened.error_text()};
+    edges_ = std::move(opened.value());
+    events_ = std::make_unique<EdgeEvents>(std::move(kinds));
+  }
+  if (config.lamp.empty()) return;
+  const LineSetting lamp = parse_lamp_line(config.lamp);
+  auto opened = drivers::open_output({config.chip, lamp.offset, lamp.active_low});
+  if (!opened.ok()) throw RunError{opened.error_text()};
+  lamp_ = std::make_unique<StatusLamp>(std::move(opened.value()));
+}
+
+void DigitalLines::start(Recorder& recorder) {
+  if (edges_) thread_ = std::thread{[this, &recorder] { watch(recorder); }};
+}
+
+void DigitalLines::stop() {
+  stop_.store(true, std::memory_order_release);
+  if (thread_.joinable()) thread_.join();
+}
+
+void DigitalLines::show(LiveState state, std::int64_t monotonic_ns) noexcept {
+  if (lamp_) lamp_->show(lamp_state(state), monotonic_ns);
+}
+
+void DigitalLines::watch(Recorder& recorder) {
+  std::array<hal::Edge, 64> edges;
+  while (!stop_.load(std::memory_order_acquire)) {
+    const auto ready = edges_->wait(kPatience);
+    if (!ready.ok()) return;  // the chip is gone; what came until now is recorded
+    if (!ready.value()) continue;
+    const auto count = edges_->read(edges);
+    if (!count.ok()) return;
+    for (std::size_t i = 0; i < count.value(); ++i)
+      for (const hal::Event& event : events_->take(edges[i])) recorder.add(event);
+  }
+}
+
+}  // namespace dampline::app
