@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "tests/bus/sensors.hpp"
+
+#include <thread>
+
+namespace dampline::bus {
+namespace {
+constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / Sensors::kRateHz};
+}
+
+Sensors::Sensors(RawSender& bus) : bus_{bus} {}
+
+CanFrame Sensors::frame(std::size_t channel) const noexcept {
+  // Any motion will do; what counts is that every frame differs from its neighbours.
+  const auto accel =
+      static_cast<std::uint32_t>((instant_ * 37 + 11 * static_cast<int>(channel)) % 400);
+  const auto counter = static_cast<std::uint32_t>(counter_[channel]) & 0xFFFU;
+  const std::uint32_t word = accel | counter << 12U;
+  return {.id = static_cast<std::uint32_t>(0x310 + channel),
+          .length = 4,
+          .data = {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8U),
+                   static_cast<std::uint8_t>(word >> 16U)}};
+}
+
+void Sensors::send_instant() {
+  std::vector<CanFrame> frames;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (instant_ < off_until_[c]) continue;
+    const CanFrame made = frame(c);
+    ++counter_[c];
+    ++made_;
+    if (!fate) {
+      frames.push_back(made);
+      continue;
+    }
+    const std::vector<CanFrame> arriving = fate(c, made);
+    frames.insert(frames.end(), arriving.begin(), arriving.end());
+  }
+  refused_ += frames.size() - bus_.send(frames);
+  ++instant_;
+}
+
+void Sensors::run(std::chrono::duration<double> time) {
+  const auto instants = static_cast<std::int64_t>(time.count() * kRateHz);
+  if (instant_ == 0) due_ = std::chrono::steady_clock::now();
+  for (std::int64_t i = 0; i < instants; ++i) {
+    due_ += kPeriod;
+    std::this_thread::sleep_until(due_);
+    send_instant();
+  }
+}
+
+void Sensors::burst(std::int64_t instants) {
+  for (std::int64_t i = 0; i < instants; ++i) send_instant();
+}
+
+void Sensors::restart_node(std::size_t channel, std::int64_t instants_off) {
+  counter_[channel] = 0;
+  off_until_[channel] = instant_ + instants_off;
+}
+
+}  // namespace dampline::bus
