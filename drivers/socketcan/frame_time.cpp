@@ -10,6 +10,7 @@ namespace {
 // Steps below ClockSteps::kLeastStepNs stay in the stamps.
 constexpr std::int64_t kToleranceNs = ClockSteps::kLeastStepNs + 100'000;
 constexpr std::int64_t kMostDriftNs = 50'000'000;
+constexpr std::int64_t kFollowFrames = 1024;
 
 std::int64_t whole_microseconds(std::int64_t time_ns) noexcept { return time_ns - time_ns % 1000; }
 
@@ -55,11 +56,14 @@ std::int64_t FrameTime::software_time_ns(std::int64_t stamp_ns) noexcept {
 }
 
 std::int64_t FrameTime::hardware_time_ns(std::int64_t stamp_ns, std::int64_t software_ns) noexcept {
-  const std::int64_t time_ns = stamp_ns + tie_ns_;
-  if (tied_ && std::abs(time_ns - software_ns) <= kMostDriftNs) return time_ns;
-  tied_ = true;
-  tie_ns_ = software_ns - stamp_ns;
-  return software_ns;
+  const std::int64_t apart_ns = software_ns - (stamp_ns + tie_ns_);
+  if (!tied_ || std::abs(apart_ns) > kMostDriftNs) {
+    tied_ = true;
+    tie_ns_ = software_ns - stamp_ns;
+  } else {
+    tie_ns_ += apart_ns / kFollowFrames;
+  }
+  return stamp_ns + tie_ns_;
 }
 
 void FrameTime::stamp(const FrameStamp& stamp, CanFrame& frame) noexcept {
@@ -71,7 +75,7 @@ void FrameTime::stamp(const FrameStamp& stamp, CanFrame& frame) noexcept {
     frame.time_source = TimeSource::kSoftware;
   }
   if (hardware_ && stamp.hardware_ns != 0) {
-    time_ns = hardware_time_ns(whole_microseconds(stamp.hardware_ns), time_ns);
+    time_ns = hardware_time_ns(stamp.hardware_ns, time_ns);
     frame.time_source = TimeSource::kHardware;
   }
   // Past now lies only what a clock said that was set to and fro between two batches.

@@ -20,8 +20,8 @@ struct FrameStamp {
 /// Software stamps are wall-clock times, from which the wall clock's steps are taken. A frame may
 /// have been stamped before a step and be read after it, so until the queue has been empty once,
 /// the time before the step is tried as well: the true time lies between the newest frame and now.
-/// Hardware stamps are tied to run time at the first frame, and again when they have drifted from
-/// the software stamps by more than 50 ms.
+/// Hardware stamps are tied to run time at the first frame; the tie follows the software stamps by
+/// a 1024th of the distance with each frame, and jumps where they are more than 50 ms apart.
 class FrameTime {
  public:
   FrameTime(hal::RunTime run_time, bool hardware) noexcept

@@ -21,9 +21,10 @@ constexpr std::int64_t kPollFailedNs = 10'000'000;
 Result<bool> SocketCanSource::do_wait(std::chrono::nanoseconds timeout) noexcept {
   const std::int64_t deadline_ns = clock_.monotonic_ns() + timeout.count();
   std::int64_t left_ns = timeout.count();
+  const bool away = !health_.link_up;
   do {
-    if (!health_.link_up) watch_outage();
-    const bool away = !health_.link_up;
+    if (away) watch_outage();
+    if (away && health_.link_up) return true;
     const Poll polled = poll_for(away ? std::min(left_ns, kLookEveryNs) : left_ns);
     if (polled == Poll::kReady) return true;
     if (polled == Poll::kInterrupted) return false;
@@ -31,8 +32,6 @@ Result<bool> SocketCanSource::do_wait(std::chrono::nanoseconds timeout) noexcept
       clock_.sleep_until(std::min(deadline_ns, clock_.monotonic_ns() + kPollFailedNs));
       return true;
     }
-    if (away) watch_outage();
-    if (away && health_.link_up) return true;
     left_ns = deadline_ns - clock_.monotonic_ns();
   } while (left_ns > 0);
   return take_silent_drops();

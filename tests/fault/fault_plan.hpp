@@ -29,6 +29,15 @@ enum class Call : std::uint8_t {
   kFcntl,
   kPpoll,
   kGpio,  ///< any call of libgpiod that the driver makes and that can fail
+  kSocket,
+  kSetsockopt,
+  kGetsockopt,
+  kBind,
+  kIoctl,
+  kRecvmmsg,
+  kSendmmsg,
+  kSend,
+  kRecv,
   kCount,
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdarg>
 
+#include "tests/fault/can_kernel.hpp"
 #include "tests/fault/fault_plan.hpp"
 
 using dampline::fault::Call;
@@ -65,6 +66,8 @@ int __wrap_close(int file) {
   const bool fails = must_fail(Call::kClose);
   const int error = errno;
   const int result = __real_close(file);
+  dampline::fault::CanKernel* const kernel = dampline::fault::CanKernel::current();
+  if (kernel != nullptr) kernel->forget(file);
   if (!fails) return result;
   errno = error;
   return -1;

@@ -93,6 +93,25 @@ TEST_F(SimulateVerb, WritesTruthDbcAndAConfigurationThatNamesTheDbc) {
   EXPECT_THAT(content(o.config), HasSubstr("frame_accel = \"TRUCK_FRAME.ACCEL_Z\"\n"));
 }
 
+TEST_F(SimulateVerb, RefusesOptionsForSendingThatDoNotFit) {
+  SimulateOptions o = options("a.log");
+  o.to = "vcan_none";
+  EXPECT_THAT(usage_error(o), HasSubstr("--to: sends frames, expected no --out"));
+  o.out = "-";
+  o.speed = 0.0;
+  EXPECT_THAT(usage_error(o), HasSubstr("--speed: 0, expected a factor above 0"));
+  o.speed = 2.0;
+  o.asap = true;
+  EXPECT_THAT(usage_error(o), HasSubstr("--asap: has no speed"));
+  o.speed = 1.0;
+  o.batch_ticks = 0;
+  EXPECT_THAT(usage_error(o), HasSubstr("--batch: 0, expected 1 to 100000"));
+  o.batch_ticks = 1;
+  EXPECT_THROW(static_cast<void>(simulate(o)), RunError) << "there is no such interface";
+  o.to.clear();
+  EXPECT_THAT(usage_error(o), HasSubstr("expected --to INTERFACE too"));
+}
+
 TEST_F(SimulateVerb, LosesFramesOnRequest) {
   SimulateOptions o = options("a.log");
   o.duration_s = 30.0;
