@@ -152,7 +152,7 @@ BlackboxSource::Step BlackboxSource::next_file() noexcept {
 
 void BlackboxSource::use_header(const BlackboxHeader& header) noexcept {
   ++findings_.files;
-  if (!any_file_) next_sequence_ = header.first_sequence;
+  if (!any_file_) next_sequence_ = header.first_sequence - header.missing_before;
   if (!any_file_ || run_id_ != header.run_id) {
     run_id_ = header.run_id;
     placed_ = false;

@@ -20,14 +20,15 @@ bool may_be_cured_by_a_new_file(int error) noexcept {
 
 }  // namespace
 
-BlackboxWriter::BlackboxWriter(const BlackboxConfig& config, Handles handles, BlackboxShelf shelf,
+BlackboxWriter::BlackboxWriter(BlackboxConfig config, Handles handles, BlackboxShelf shelf,
                                const BlackboxHeader& header)
-    : config_{config},
+    : config_{std::move(config)},
       handles_{std::move(handles)},
       shelf_{std::move(shelf)},
       header_{header},
       next_number_{shelf_.next_number()},
-      next_sequence_{shelf_.next_sequence()} {}
+      next_sequence_{shelf_.next_sequence()},
+      written_end_{next_sequence_} {}
 
 BlackboxWriter::~BlackboxWriter() { finish_file(); }
 
@@ -73,6 +74,7 @@ bool BlackboxWriter::make_ready() noexcept {
 bool BlackboxWriter::begin_file() noexcept {
   header_.file_number = next_number_++;
   header_.first_sequence = next_sequence_;
+  header_.missing_before = next_sequence_ - written_end_;
   header_.created_ns = newest_ns_;
   if (const int error = output_.begin(handles_.directory, header_); error != 0) {
     stop(error, 0);
@@ -102,7 +104,8 @@ void BlackboxWriter::do_tick(std::int64_t monotonic_ns) noexcept {
   if (output_.is_open() && now_ns_ - synced_ns_ >= config_.sync_interval_ns) {
     synced_ns_ = now_ns_;
     if (output_.dirty()) sync();
-    keep_limits();
+    remove_old_files();
+    keep_reserve();
   }
   if (output_.is_open() && now_ns_ - began_ns_ >= config_.rotate_ns) do_rotate();
 }
@@ -121,8 +124,9 @@ void BlackboxWriter::finish_file() noexcept {
   sync();
   if (!output_.is_open() || output_.number() != number) return;  // it failed
   shelf_.add(number, output_.bytes(), header_.created_ns);
+  written_end_ = next_sequence_;
   output_.end();
-  keep_limits();
+  remove_old_files();
 }
 
 void BlackboxWriter::flush() noexcept {
@@ -155,6 +159,7 @@ void BlackboxWriter::fail(int error, bool sync_failed) noexcept {
   const std::uint64_t lost = output_.abandon(handles_.directory, sync_failed);
   if (output_.bytes() > kRecordsAt)
     shelf_.add(output_.number(), output_.bytes(), header_.created_ns);
+  written_end_ = header_.first_sequence + output_.whole_records();
   stop(error, lost);
   if (may_be_cured_by_a_new_file(error)) static_cast<void>(resume());
 }
@@ -194,15 +199,18 @@ bool BlackboxWriter::resume() noexcept {
   return true;
 }
 
-void BlackboxWriter::keep_limits() noexcept {
-  const std::uint64_t current = output_.is_open() ? output_.bytes() : 0;
-  health_.files_removed +=
-      shelf_.trim(handles_.directory, {config_.keep_bytes, config_.keep_ns}, current,
-                  output_.is_open() ? header_.created_ns : newest_ns_, newest_ns_);
-  if (output_.is_open() && !has_space(0)) {
-    finish_file();
-    if (health_.recording && !output_.is_open()) stop(ENOSPC, 0);
-  }
+void BlackboxWriter::remove_old_files() noexcept {
+  const bool is_open = output_.is_open();
+  health_.files_removed += shelf_.trim(handles_.directory, {config_.keep_bytes, config_.keep_ns},
+                                       is_open ? output_.bytes() : 0,
+                                       is_open ? header_.created_ns : newest_ns_, newest_ns_);
+}
+
+/// Stops before the file system is full, if asked to.
+void BlackboxWriter::keep_reserve() noexcept {
+  if (!output_.is_open() || has_space(0)) return;
+  finish_file();
+  if (health_.recording && !output_.is_open()) stop(ENOSPC, 0);
 }
 
 bool BlackboxWriter::has_space(std::uint64_t beyond_reserve) const noexcept {

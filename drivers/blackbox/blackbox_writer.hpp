@@ -61,7 +61,7 @@ class BlackboxWriter final : public hal::RecordSink {
   };
   static Outcome<Handles> take_directory(const std::filesystem::path& directory);
 
-  BlackboxWriter(const BlackboxConfig& config, Handles handles, BlackboxShelf shelf,
+  BlackboxWriter(BlackboxConfig config, Handles handles, BlackboxShelf shelf,
                  const BlackboxHeader& header);
   void do_write(const CanFrame& frame) noexcept override;
   void do_write(const hal::Event& event) noexcept override;
@@ -84,7 +84,8 @@ class BlackboxWriter final : public hal::RecordSink {
   void flush() noexcept;
   void sync() noexcept;
   void take_counts() noexcept;
-  void keep_limits() noexcept;
+  void remove_old_files() noexcept;
+  void keep_reserve() noexcept;
   [[nodiscard]] bool has_space(std::uint64_t beyond_reserve) const noexcept;
 
   BlackboxConfig config_;
@@ -95,6 +96,7 @@ class BlackboxWriter final : public hal::RecordSink {
   hal::RecordHealth health_{};
   std::uint32_t next_number_;
   std::uint64_t next_sequence_;
+  std::uint64_t written_end_;  // behind the last record that a file has
   std::int64_t newest_ns_{0};  // run time of the newest record
   std::int64_t now_ns_{0};     // monotonic, of the tick before
   bool ticked_{false};

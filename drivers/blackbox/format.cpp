@@ -18,7 +18,8 @@ constexpr std::size_t kFileNumberAt = 12;
 constexpr std::size_t kRunIdAt = 16;
 constexpr std::size_t kFirstSequenceAt = 24;
 constexpr std::size_t kCreatedAt = 32;
-constexpr std::size_t kInterfaceCountAt = 40;
+constexpr std::size_t kMissingBeforeAt = 40;
+constexpr std::size_t kInterfaceCountAt = 48;
 constexpr std::size_t kInterfacesAt = 64;
 constexpr std::size_t kHeaderChecksumAt = kHeaderBytes - 4;
 static_assert(kInterfacesAt + kMostInterfaces * (kLongestInterface + 1) <= kHeaderChecksumAt);
@@ -72,6 +73,7 @@ void encode_header(const BlackboxHeader& header, std::span<std::uint8_t, kRecord
   put_little_endian(at + kRunIdAt, header.run_id);
   put_little_endian(at + kFirstSequenceAt, header.first_sequence);
   put_little_endian(at + kCreatedAt, header.created_ns);
+  put_little_endian(at + kMissingBeforeAt, header.missing_before);
   at[kInterfaceCountAt] = header.interface_count;
   std::memcpy(at + kInterfacesAt, header.interfaces.data(), sizeof(header.interfaces));
   put_little_endian(at + kHeaderChecksumAt, crc32c({at, kHeaderChecksumAt}));
@@ -92,6 +94,7 @@ HeaderFault decode_header(std::span<const std::uint8_t, kHeaderBytes> bytes,
   header.run_id = get_little_endian<std::uint64_t>(at + kRunIdAt);
   header.first_sequence = get_little_endian<std::uint64_t>(at + kFirstSequenceAt);
   header.created_ns = get_little_endian<std::int64_t>(at + kCreatedAt);
+  header.missing_before = get_little_endian<std::uint64_t>(at + kMissingBeforeAt);
   header.interface_count = std::min(at[kInterfaceCountAt], std::uint8_t{kMostInterfaces});
   std::memcpy(header.interfaces.data(), at + kInterfacesAt, sizeof(header.interfaces));
   for (auto& name : header.interfaces) name.back() = '\0';

@@ -37,6 +37,7 @@ struct BlackboxHeader {
   std::uint64_t run_id{0};          ///< random, one for each start of a writer
   std::uint64_t first_sequence{0};  ///< of the record with number 0
   std::int64_t created_ns{0};       ///< run time
+  std::uint64_t missing_before{0};  ///< records between the file before and this one, not written
   std::uint8_t interface_count{0};
   std::array<std::array<char, kLongestInterface + 1>, kMostInterfaces> interfaces{};
 

@@ -47,6 +47,7 @@ int BlackboxOutput::begin(int directory, const BlackboxHeader& header) noexcept 
   header_ = header;
   seed_ = header.checksum_seed();
   records_ = 0;
+  whole_ = 0;
   written_ = kRecordsAt;
   unsynced_ = 0;
   buffered_ = {};
@@ -94,6 +95,7 @@ void BlackboxOutput::count_whole(std::size_t done) noexcept {
     ++(frame ? new_written_.frames : new_written_.events);
     --(frame ? buffered_.frames : buffered_.events);
     ++unsynced_;
+    ++whole_;
     at = next;
   }
   written_ += at;

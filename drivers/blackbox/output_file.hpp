@@ -47,6 +47,8 @@ class BlackboxOutput {
   [[nodiscard]] std::uint32_t number() const noexcept { return header_.file_number; }
   /// Records begun, with those in the buffer.
   [[nodiscard]] std::uint32_t records() const noexcept { return records_; }
+  /// Whole records that the kernel has.
+  [[nodiscard]] std::uint32_t whole_records() const noexcept { return whole_; }
   /// With what is in the buffer.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return written_ + used_; }
   [[nodiscard]] bool dirty() const noexcept { return unsynced_ + buffered_.all() > 0; }
@@ -64,6 +66,7 @@ class BlackboxOutput {
   BlackboxHeader header_{};
   std::uint32_t seed_{0};
   std::uint32_t records_{0};
+  std::uint32_t whole_{0};
   std::uint64_t written_{0};   // bytes in the file: headers and whole records
   std::uint64_t unsynced_{0};  // records in the file that were not synced
   RecordCount buffered_{};

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// What is left of a black box that was damaged: exactly what was not hit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "drivers/blackbox/format.hpp"
+#include "tests/blackbox.hpp"
+
+namespace dampline::drivers {
+namespace {
+
+using testing::BoxContent;
+using testing::BoxFolder;
+using testing::bytes_of;
+using testing::read_box;
+using testing::write_bytes;
+
+constexpr std::uint64_t kRecords = 20;
+
+/// A small black box of one file, and where each of its records begins.
+class SmallBox {
+ public:
+  SmallBox() {
+    testing::write_box(testing::box_config(folder_.path()), 0, kRecords);
+    bytes_ = bytes_of(folder_.file(1));
+    for (std::size_t at = kRecordsAt; at < bytes_.size();) {
+      begins_.push_back(at);
+      at += kRecordHead + static_cast<std::uint8_t>(bytes_[at + kRecordLengthAt]) + kRecordTail;
+    }
+    begins_.push_back(bytes_.size());
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] BoxContent with(const std::string& bytes) const {
+    write_bytes(folder_.file(1), bytes);
+    return read_box(folder_.path());
+  }
+  /// Numbers of the records that no byte of [from, to) belongs to.
+  [[nodiscard]] std::vector<std::uint64_t> beside(std::size_t from, std::size_t to) const {
+    std::vector<std::uint64_t> numbers;
+    for (std::size_t i = 0; i + 1 < begins_.size(); ++i)
+      if (begins_[i + 1] <= from || begins_[i] >= to) numbers.push_back(i);
+    return numbers;
+  }
+  [[nodiscard]] const std::vector<std::size_t>& begins() const { return begins_; }
+  [[nodiscard]] const BoxFolder& folder() const { return folder_; }
+
+ private:
+  BoxFolder folder_;
+  std::string bytes_;
+  std::vector<std::size_t> begins_;
+};
+
+TEST(BlackboxDamage, NoneIsSeenInAWholeOne) {
+  const SmallBox box;
+  ASSERT_EQ(box.begins().size(), kRecords + 1);
+  const BoxContent content = box.with(box.bytes());
+  EXPECT_EQ(content.numbers(), testing::range(0, kRecords));
+  EXPECT_TRUE(content.all_true());
+  EXPECT_EQ(content.end, Errc::kEndOfStream);
+  EXPECT_EQ(content.health.malformed + content.health.dropped, 0U);
+  EXPECT_FALSE(content.health.truncated);
+}
+
+TEST(BlackboxDamage, EveryFlippedBitLosesExactlyTheRecordThatItHits) {
+  const SmallBox box;
+  std::string bytes = box.bytes();
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto mask = static_cast<char>(1U << bit % 8);
+    const std::size_t at = bit / 8;
+    bytes[at] = static_cast<char>(bytes[at] ^ mask);
+    const BoxContent content = box.with(bytes);
+    bytes[at] = static_cast<char>(bytes[at] ^ mask);
+    const auto expected = box.beside(at, at + 1);
+    ASSERT_EQ(content.numbers(), expected) << "bit " << bit;
+    ASSERT_TRUE(content.all_true()) << "bit " << bit;
+    const bool hit = expected.size() < kRecords;
+    const bool last = hit && at >= box.begins()[kRecords - 1];
+    ASSERT_EQ(content.health.malformed, hit && !last ? 1U : 0U) << "bit " << bit;
+    ASSERT_EQ(content.health.dropped, hit && !last ? 1U : 0U) << "bit " << bit;
+    ASSERT_EQ(content.health.truncated, last) << "bit " << bit;
+  }
+}
+
+TEST(BlackboxDamage, EveryTruncationLosesExactlyWhatIsCutOff) {
+  const SmallBox box;
+  for (std::size_t size = 0; size < box.bytes().size(); ++size) {
+    const BoxContent content = box.with(box.bytes().substr(0, size));
+    if (size < kHeaderBytes) {
+      ASSERT_FALSE(content.opened) << size;
+      ASSERT_NE(content.error.find("is cut off in its header"), std::string::npos);
+      continue;
+    }
+    const auto expected = box.beside(size, box.bytes().size());
+    ASSERT_EQ(content.numbers(), expected) << size;
+    ASSERT_TRUE(content.all_true()) << size;
+    const bool at_record = std::ranges::count(box.begins(), size) == 1;
+    ASSERT_EQ(content.health.truncated, !at_record) << size;
+    ASSERT_EQ(content.health.malformed, 0U) << size;
+  }
+}
+
+TEST(BlackboxDamage, EveryMissingByteLosesExactlyItsRecord) {
+  const SmallBox box;
+  for (std::size_t at = kRecordsAt; at < box.bytes().size(); ++at) {
+    std::string bytes = box.bytes();
+    bytes.erase(at, 1);
+    const BoxContent content = box.with(bytes);
+    ASSERT_EQ(content.numbers(), box.beside(at, at + 1)) << at;
+    ASSERT_TRUE(content.all_true()) << at;
+  }
+}
+
+TEST(BlackboxDamage, EveryHoleOfASectorLosesExactlyTheRecordsInIt) {
+  const SmallBox box;
+  for (std::size_t at = 0; at < box.bytes().size(); ++at) {
+    std::string bytes = box.bytes();
+    const std::size_t end = std::min(at + 512, bytes.size());
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+              bytes.begin() + static_cast<std::ptrdiff_t>(end), '\0');
+    const BoxContent content = box.with(bytes);
+    ASSERT_TRUE(content.opened) << at;
+    ASSERT_EQ(content.numbers(), box.beside(at, end)) << at;
+    ASSERT_TRUE(content.all_true()) << at;
+  }
+}
+
+// Power cut: the file is as long as the last size that reached the disk, and behind what was synced
+// stands anything: zeros, garbage, or an old block, here one with records of another file and one
+// with records of this file.
+TEST(BlackboxDamage, PowerCutsAtEveryByteLoseNothingThatWasSyncedAndInventNothing) {
+  const SmallBox box;
+  const SmallBox other;
+  std::mt19937 random{3};
+  for (std::size_t cut = box.begins()[kRecords - 6]; cut <= box.bytes().size(); ++cut) {
+    const std::string kept = box.bytes().substr(0, cut);
+    std::string garbage(600, '\0');
+    for (char& byte : garbage) byte = static_cast<char>(random());
+    for (const std::string& tail :
+         {std::string(600, '\0'), std::string(600, '\xff'), garbage,
+          other.bytes().substr(kRecordsAt), box.bytes().substr(kRecordsAt, 200),
+          std::string(5000, static_cast<char>(0xDB))}) {
+      const BoxContent content = box.with(kept + tail);
+      ASSERT_EQ(content.numbers(), box.beside(cut, box.bytes().size())) << cut;
+      ASSERT_TRUE(content.all_true()) << cut;
+      ASSERT_TRUE(content.health.truncated) << cut;
+    }
+  }
+}
+
+TEST(BlackboxDamage, TheNextStartGoesOnBehindATornEndInANewFile) {
+  const SmallBox box;
+  for (std::size_t size = 0; size <= box.bytes().size(); size += 7) {
+    const std::string torn = box.bytes().substr(0, size);
+    write_bytes(box.folder().file(1), torn);
+    testing::write_box(testing::box_config(box.folder().path()), 1000, 3);
+    ASSERT_EQ(bytes_of(box.folder().file(1)), torn);  // left as it is
+    const BoxContent content = read_box(box.folder().path());
+    auto expected = box.beside(size, box.bytes().size());
+    if (size < kHeaderBytes) expected.clear();
+    for (const std::uint64_t number : testing::range(1000, 3)) expected.push_back(number);
+    ASSERT_EQ(content.numbers(), expected) << size;
+    ASSERT_EQ(content.health.dropped, 0U) << size;  // whoever was killed could not count
+    ASSERT_FALSE(content.health.truncated) << size;
+    std::filesystem::remove(box.folder().file(2));
+  }
+}
+
+TEST(BlackboxDamage, AFileWithoutAHeaderLosesOnlyItself) {
+  BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  const auto writer = testing::open_box(config);
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    writer->write(testing::numbered_frame(i));
+    if (i % 10 == 9) writer->close();
+  }
+  std::string bytes = bytes_of(folder.file(2));
+  std::fill_n(bytes.begin(), kRecordsAt, '\0');
+  write_bytes(folder.file(2), bytes);
+  const BoxContent content = read_box(folder.path());
+  auto expected = testing::range(0, 10);
+  for (const std::uint64_t number : testing::range(20, 10)) expected.push_back(number);
+  EXPECT_EQ(content.numbers(), expected);
+  EXPECT_EQ(content.health.dropped, 10U);
+  EXPECT_EQ(content.health.malformed, 1U);
+  EXPECT_EQ(content.findings.unreadable_files, 1U);
+}
+
+TEST(BlackboxDamage, ACopyOfAnEarlierBlockIsNoRecord) {
+  const SmallBox box;
+  const std::size_t begin = box.begins()[3];
+  const std::string block = box.bytes().substr(begin, box.begins()[6] - begin);
+  std::string bytes = box.bytes();
+  bytes.insert(box.begins()[10], block);
+  const BoxContent content = box.with(bytes);
+  EXPECT_EQ(content.numbers(), testing::range(0, kRecords));
+  EXPECT_EQ(content.health.malformed, 1U);
+}
+
+}  // namespace
+}  // namespace dampline::drivers

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "drivers/blackbox/blackbox_writer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/blackbox.hpp"
+
+namespace dampline::drivers {
+namespace {
+
+using hal::EventKind;
+using testing::BoxFolder;
+using ::testing::HasSubstr;
+using testing::kSecondNs;
+using testing::numbered_frame;
+using testing::open_box;
+using testing::read_box;
+
+TEST(BlackboxWriter, KeepsFramesAndEventsInTheirOrder) {
+  const BoxFolder folder;
+  const auto writer = open_box(testing::box_config(folder.path()));
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    writer->write(numbered_frame(i));
+    writer->write(hal::Event{numbered_frame(i).time_ns + 1, EventKind::kPulse, 3,
+                             static_cast<std::int64_t>(i)});
+  }
+  writer->close();
+  EXPECT_EQ(writer->health().frames, 10U);
+  EXPECT_EQ(writer->health().events, 10U);
+  EXPECT_EQ(writer->health().lost, 0U);
+  EXPECT_EQ(writer->health().files, 1U);
+  EXPECT_EQ(writer->health().bytes, std::filesystem::file_size(folder.file(1)));
+  auto source = BlackboxSource::open({folder.path(), {}});
+  std::vector<CanFrame> frames(100);
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    ASSERT_EQ(source.value()->read(frames).value(), 1U);
+    EXPECT_TRUE(testing::same(frames[0], numbered_frame(i)));
+    hal::Event event;
+    ASSERT_TRUE(source.value()->next_event(event));
+    EXPECT_EQ(event.kind, EventKind::kPulse);
+    EXPECT_EQ(event.line, 3);
+    EXPECT_EQ(event.value, static_cast<std::int64_t>(i));
+    EXPECT_FALSE(source.value()->next_event(event));
+  }
+}
+
+TEST(BlackboxWriter, MakesNoFileBeforeItsFirstRecord) {
+  const BoxFolder folder;
+  {
+    const auto writer = open_box(testing::box_config(folder.path()));
+    writer->tick(1);
+    writer->rotate();
+    writer->tick(2 * 3600 * kSecondNs);
+    writer->close();
+  }
+  EXPECT_EQ(folder.files(), 0U);
+  EXPECT_TRUE(is_blackbox(folder.path()));
+}
+
+TEST(BlackboxWriter, IsOnTheDiskWithinTheSyncInterval) {
+  const BoxFolder folder;
+  const auto writer = open_box(testing::box_config(folder.path()));
+  writer->tick(0);
+  writer->write(numbered_frame(0));
+  const std::uint64_t begun = writer->health().syncs;
+  writer->tick(kSecondNs / 10);
+  EXPECT_EQ(writer->health().frames, 1U);  // handed to the kernel
+  EXPECT_EQ(writer->health().syncs, begun);
+  writer->tick(kSecondNs);
+  EXPECT_EQ(writer->health().syncs, begun + 1);
+  writer->tick(2 * kSecondNs);  // nothing new
+  EXPECT_EQ(writer->health().syncs, begun + 1);
+  EXPECT_EQ(read_box(folder.path()).frames.size(), 1U);
+}
+
+TEST(BlackboxWriter, RotatesBySize) {
+  const BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.rotate_bytes = 8192;
+  testing::write_box(config, 0, 1000);
+  EXPECT_GT(folder.files(), 4U);
+  for (std::uint32_t i = 1; i <= folder.files(); ++i)
+    EXPECT_LE(std::filesystem::file_size(folder.file(i)), 8192U);
+  const auto content = read_box(folder.path());
+  EXPECT_EQ(content.numbers(), testing::range(0, 1000));
+  EXPECT_EQ(content.health.dropped, 0U);
+  const auto rotated = content.of(EventKind::kFileRotated);
+  ASSERT_EQ(rotated.size(), folder.files() - 1);
+  auto second = BlackboxSource::open({folder.file(2), {}});  // each can be read alone
+  ASSERT_TRUE(second.ok());
+  const auto alone = read_box(folder.file(2));
+  const auto first = read_box(folder.file(1));
+  EXPECT_EQ(alone.numbers().front(), first.numbers().back() + 1);
+  EXPECT_EQ(static_cast<std::uint64_t>(rotated[0].value), first.frames.size());
+  EXPECT_EQ(alone.health.dropped, 0U);
+}
+
+TEST(BlackboxWriter, RotatesByTimeAndWhenAsked) {
+  const BoxFolder folder;
+  const auto writer = open_box(testing::box_config(folder.path()));
+  std::int64_t now_ns = 1'000'000 * kSecondNs;
+  writer->tick(now_ns);
+  writer->write(numbered_frame(0));
+  writer->tick(now_ns + 3599 * kSecondNs);
+  EXPECT_EQ(folder.files(), 1U);
+  writer->tick(now_ns += 3600 * kSecondNs);
+  writer->tick(now_ns += 7200 * kSecondNs);  // no record, no file
+  EXPECT_EQ(folder.files(), 1U);
+  writer->write(numbered_frame(1));
+  EXPECT_EQ(folder.files(), 2U);
+  writer->rotate();
+  writer->rotate();
+  writer->write(numbered_frame(2));
+  EXPECT_EQ(folder.files(), 3U);
+  writer->close();
+  const auto content = read_box(folder.path());
+  EXPECT_EQ(content.numbers(), testing::range(0, 3));
+  EXPECT_EQ(content.of(EventKind::kFileRotated).size(), 2U);
+}
+
+TEST(BlackboxWriter, RemovesTheOldestFilesAndNothingElse) {
+  const BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.rotate_bytes = 8192;
+  config.keep_bytes = 40000;
+  std::filesystem::create_directories(folder.path());
+  for (const char* name : {"blackbox-1.dbb", "notes.txt", "blackbox-000000.dbb.bak"})
+    testing::write_bytes(folder.path() / name, std::string(100'000, 'x'));
+  const auto writer = open_box(config);
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    writer->write(numbered_frame(i));
+    if (i % 100 == 0) writer->tick(static_cast<std::int64_t>(i) * kSecondNs);
+    std::uint64_t bytes = 0;
+    std::error_code error;
+    for (const auto& file : list_blackbox(folder.path(), error)) bytes += file.bytes;
+    ASSERT_LE(bytes, 40000U + 8192U);
+  }
+  writer->close();
+  EXPECT_GT(writer->health().files_removed, 10U);
+  const auto content = read_box(folder.path());
+  ASSERT_FALSE(content.frames.empty());
+  EXPECT_EQ(content.numbers(), testing::range(5000 - content.frames.size(), content.frames.size()));
+  EXPECT_EQ(content.health.dropped, 0U);  // what was given up on purpose is not lost
+  for (const char* name : {"blackbox-1.dbb", "notes.txt", "blackbox-000000.dbb.bak"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+}
+
+TEST(BlackboxWriter, NeverRemovesTheCurrentFile) {
+  const BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.rotate_bytes = 100'000;
+  config.keep_bytes = 1;
+  const auto writer = open_box(config);
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    writer->write(numbered_frame(i));
+    writer->tick(static_cast<std::int64_t>(i) * kSecondNs);
+    ASSERT_EQ(folder.files(), 1U);
+  }
+  EXPECT_EQ(writer->health().lost, 0U);
+}
+
+TEST(BlackboxWriter, RemovesFilesByTheirAge) {
+  const BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.keep_ns = 3600 * kSecondNs;
+  const auto writer = open_box(config);
+  for (int hour = 0; hour < 10; ++hour) {
+    CanFrame frame = numbered_frame(static_cast<std::uint64_t>(hour));
+    frame.time_ns = testing::kStartNs + hour * 3600 * kSecondNs;
+    writer->write(frame);
+    writer->rotate();
+  }
+  EXPECT_EQ(folder.files(), 3U);  // the newest two hours, and the file that reaches into them
+  EXPECT_EQ(read_box(folder.path()).numbers(), testing::range(7, 3));
+}
+
+TEST(BlackboxWriter, GoesOnInANewFileWithTheNextNumbers) {
+  const BoxFolder folder;
+  std::uint64_t sequence = 0;
+  for (std::uint64_t run = 0; run < 4; ++run) {
+    const auto writer = open_box(testing::box_config(folder.path()));
+    EXPECT_EQ(writer->next_sequence(), sequence);
+    for (std::uint64_t i = 0; i < 10; ++i) writer->write(numbered_frame(10 * run + i));
+    sequence = writer->next_sequence();
+  }
+  EXPECT_EQ(folder.files(), 4U);
+  const auto content = read_box(folder.path());
+  EXPECT_EQ(content.numbers(), testing::range(0, 40));
+  EXPECT_EQ(content.health.dropped, 0U);
+  EXPECT_TRUE(content.of(EventKind::kFileRotated).empty());
+}
+
+TEST(BlackboxWriter, FindsTheLastNumberOfALongFileByItsTail) {
+  const BoxFolder folder;
+  testing::write_box(testing::box_config(folder.path()), 0, 100'000);
+  ASSERT_GT(std::filesystem::file_size(folder.file(1)), 3U << 20U);
+  EXPECT_EQ(open_box(testing::box_config(folder.path()))->next_sequence(), 100'000U);
+}
+
+TEST(BlackboxWriter, GoesOnAfterItsEnd) {
+  const BoxFolder folder;
+  const auto writer = open_box(testing::box_config(folder.path()));
+  writer->write(numbered_frame(0));
+  writer->close();
+  writer->write(numbered_frame(1));
+  writer->close();
+  EXPECT_EQ(read_box(folder.path()).numbers(), testing::range(0, 2));
+}
+
+TEST(BlackboxWriter, IsTheOnlyOneInItsDirectory) {
+  const BoxFolder folder;
+  auto first = open_box(testing::box_config(folder.path()));
+  const auto second = BlackboxWriter::open(testing::box_config(folder.path()));
+  ASSERT_FALSE(second.ok());
+  EXPECT_THAT(second.error_text(), HasSubstr(folder.path().string()));
+  EXPECT_THAT(second.error_text(),
+              HasSubstr("is being written to by process " + std::to_string(::getpid())));
+  first.reset();
+  EXPECT_TRUE(BlackboxWriter::open(testing::box_config(folder.path())).ok());
+}
+
+TEST(BlackboxWriter, SaysWhatIsWrongWithItsConfiguration) {
+  const BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.interfaces.clear();
+  EXPECT_THAT(BlackboxWriter::open(config).error_text(), HasSubstr("found 0 interfaces"));
+  config.interfaces = {"sixteen_letters_"};
+  EXPECT_THAT(BlackboxWriter::open(config).error_text(), HasSubstr("1 to 15 characters"));
+  config.interfaces = {"can0"};
+  config.rotate_bytes = 100;
+  EXPECT_THAT(BlackboxWriter::open(config).error_text(), HasSubstr("4096 bytes at least"));
+  const testing::BoxFolder file;
+  testing::write_bytes(file.path(), "x");
+  EXPECT_THAT(BlackboxWriter::open(testing::box_config(file.path())).error_text(),
+              HasSubstr(file.path().string() + ": cannot be made"));
+  EXPECT_FALSE(BlackboxWriter::open(testing::box_config(file.path() / "inside")).ok());
+}
+
+TEST(BlackboxWriter, LeavesADirectoryOfAnotherVersionAlone) {
+  const BoxFolder folder;
+  testing::write_box(testing::box_config(folder.path()), 0, 3);
+  BlackboxHeader header;
+  header.version = 2;
+  std::array<std::uint8_t, kRecordsAt> bytes{};
+  encode_header(header, bytes);
+  testing::write_bytes(folder.file(2), {bytes.begin(), bytes.end()});
+  EXPECT_THAT(BlackboxWriter::open(testing::box_config(folder.path())).error_text(),
+              HasSubstr("is of format version 2, this program writes 1"));
+  EXPECT_THAT(read_box(folder.path()).error, HasSubstr("is of format version 2, expected 1"));
+}
+
+}  // namespace
+}  // namespace dampline::drivers
