@@ -17,6 +17,7 @@
 #include "drivers/candump/candump_source.hpp"
 #include "hal/frame_source.hpp"
 #include "sim_hw/simulated_source.hpp"
+#include "tests/blackbox.hpp"
 
 namespace dampline {
 namespace {
@@ -135,6 +136,44 @@ class Simulated {
       std::make_unique<sim::SimulatedSource>(sim::SimulationConfig{}, kFrames / kChannels);
 };
 
+/// With events among the frames, in several files.
+class BlackboxFolder {
+ public:
+  BlackboxFolder() {
+    auto config = testing::box_config(folder_.path());
+    config.rotate_bytes = 4096;
+    const auto writer = testing::open_box(config);
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      writer->write(testing::numbered_frame(i));
+      if (i % 40 == 0) writer->write(hal::Event{testing::kStartNs, hal::EventKind::kPulse, 0, 0});
+    }
+    writer->close();
+    source_ = std::move(drivers::BlackboxSource::open({folder_.path(), {}}).value());
+  }
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  testing::BoxFolder folder_;
+  std::unique_ptr<drivers::BlackboxSource> source_;
+};
+
+/// One record more, and one of them hit.
+class DamagedBlackbox {
+ public:
+  DamagedBlackbox() {
+    testing::write_box(testing::box_config(folder_.path()), 0, kFrames + 1);
+    std::string bytes = testing::bytes_of(folder_.file(1));
+    bytes[bytes.size() / 2] = static_cast<char>(~bytes[bytes.size() / 2]);
+    testing::write_bytes(folder_.file(1), bytes);
+    source_ = std::move(drivers::BlackboxSource::open({folder_.path(), {}}).value());
+  }
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  testing::BoxFolder folder_;
+  std::unique_ptr<drivers::BlackboxSource> source_;
+};
+
 template <class Implementation>
 class FrameSourceContract : public ::testing::Test {
  protected:
@@ -158,7 +197,8 @@ class FrameSourceContract : public ::testing::Test {
   Implementation implementation_;
 };
 
-using Implementations = ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated>;
+using Implementations =
+    ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated, BlackboxFolder, DamagedBlackbox>;
 TYPED_TEST_SUITE(FrameSourceContract, Implementations);
 
 TYPED_TEST(FrameSourceContract, DeliversFramesInNonDecreasingTime) {

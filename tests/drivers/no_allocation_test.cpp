@@ -12,22 +12,25 @@
 #include "drivers/candump/candump_source.hpp"
 #include "drivers/csv/csv_reader.hpp"
 #include "temporary_file.hpp"
+#include "tests/blackbox.hpp"
 
 namespace {
 std::atomic<std::uint64_t> allocations{0};
 }  // namespace
 
-void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*unused*/) noexcept {
   ++allocations;
   return std::malloc(size);
 }
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   void* memory = operator new(size, std::nothrow);
   if (memory == nullptr) throw std::bad_alloc{};
   return memory;
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
 
 namespace dampline::drivers {
 namespace {
@@ -68,6 +71,39 @@ TEST(NoAllocation, ReadingATable) {
     count += read.value();
   EXPECT_EQ(allocations - before, 0U);
   EXPECT_EQ(count, 20000U);
+}
+
+TEST(NoAllocation, WritingToABlackBoxWithinAFile) {
+  const testing::BoxFolder folder;
+  const auto writer = testing::open_box(testing::box_config(folder.path()));
+  writer->write(testing::numbered_frame(0));
+  const std::uint64_t before = allocations;
+  for (std::uint64_t i = 1; i < 100'000; ++i) {
+    writer->write(testing::numbered_frame(i));
+    if (i % 1000 == 0) writer->write(hal::Event{});
+    if (i % 100 == 0) writer->tick(static_cast<std::int64_t>(i) * 10'000'000);
+  }
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_EQ(writer->health().files, 1U);
+}
+
+TEST(NoAllocation, ReadingABlackBoxFromFileToFile) {
+  const testing::BoxFolder folder;
+  auto config = testing::box_config(folder.path());
+  config.rotate_bytes = 100'000;
+  testing::write_box(config, 0, 20'000);
+  std::string bytes = testing::bytes_of(folder.file(1));
+  bytes[5000] = static_cast<char>(~bytes[5000]);
+  testing::write_bytes(folder.file(1), bytes);
+  auto source = BlackboxSource::open({folder.path(), {}});
+  std::array<CanFrame, 64> frames;
+  std::size_t count = 0;
+  const std::uint64_t before = allocations;
+  for (auto read = source.value()->read(frames); read.ok(); read = source.value()->read(frames))
+    count += read.value();
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_EQ(count, 19'999U);
+  EXPECT_GT(source.value()->findings().files, 5U);
 }
 
 }  // namespace
