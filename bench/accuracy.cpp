@@ -155,8 +155,7 @@ void asymmetry_table(const Seeds& seeds) {
 void harder_tables(const Seeds& seeds) {
   changed_table("Standstill of 60 s in the middle, 300 s:", 0.004, seeds,
                 [](AccuracyCase& c, IdentifierConfig&) {
-                  c.simulation.speed.standstill_start_s = 120.0;
-                  c.simulation.speed.standstill_end_s = 180.0;
+                  c.simulation.speed.standstills[0] = {120.0, 180.0};
                 });
   changed_table(
       "Speed changes from 80 to 60 km/h in the middle, 300 s:", 0.004, seeds,

@@ -20,13 +20,18 @@ Step smooth_step(double time_s, double start_s, double length_s) noexcept {
           30.0 * u * u * (1.0 - u) * (1.0 - u) / length_s};
 }
 
-/// Share of the speed that a standstill leaves.
+/// Share of the speed that the standstills leave.
 Step running_share(const SpeedConfig& config, double speed_mps, double time_s) noexcept {
-  if (!(config.standstill_end_s > config.standstill_start_s)) return {1.0, 0.0};
   const double length = speed_mps / config.ramp_mps2;
-  const Step brake = smooth_step(time_s, config.standstill_start_s - length, length);
-  const Step start = smooth_step(time_s, config.standstill_end_s, length);
-  return {1.0 - brake.value + start.value, start.rate_ps - brake.rate_ps};
+  Step share{1.0, 0.0};
+  for (const Standstill& standstill : config.standstills) {
+    if (!(standstill.end_s > standstill.start_s)) continue;
+    const Step brake = smooth_step(time_s, standstill.start_s - length, length);
+    const Step start = smooth_step(time_s, standstill.end_s, length);
+    share.value = share.value - brake.value + start.value;
+    share.rate_ps = share.rate_ps + start.rate_ps - brake.rate_ps;
+  }
+  return share;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct SimulateOptions {
   std::string track{"low"};  ///< ORE B176, or "high"
   double short_wave_mps2{2.0};
   double friction_scale{1.0};
-  std::vector<double> standstill_s;  ///< start and end, or nothing
+  std::vector<double> standstill_s;  ///< start and end of each
   std::vector<double> speed_change;  ///< seconds and km/h, or nothing
   double noise_mps2{0.02};
   double bias_mps2{0.1};

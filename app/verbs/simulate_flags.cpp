@@ -42,9 +42,10 @@ void add_car_flags(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
   verb.add_option("--friction-scale", options.friction_scale, "factor of the friction")
       ->capture_default_str();
-  verb.add_option("--standstill", options.standstill_s, "START,END in seconds")
+  verb.add_option("--standstill", options.standstill_s, "START,END in seconds (repeatable)")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2, 2 * static_cast<int>(sim::kMostStandstills))
+      ->take_all();
   verb.add_option("--speed-change", options.speed_change, "TIME,KMH: change to another speed")
       ->delimiter(',')
       ->expected(2);

@@ -47,15 +47,26 @@ void check_numbers(const SimulateOptions& options) {
   require(within(options.drift_mps2, 0.0, 1000.0), "--drift-mps2", options.drift_mps2, "0 to 1000");
 }
 
-void set_speed(const SimulateOptions& options, sim::SpeedConfig& speed) {
-  if (!options.standstill_s.empty()) {
-    const double start = options.standstill_s.at(0);
-    const double end = options.standstill_s.at(1);
-    require(within(start, 0.0, end) && std::isfinite(end) && end > start, "--standstill", start,
-            fmt::format("a start of 0 or more before the end ({})", end));
-    speed.standstill_start_s = start;
-    speed.standstill_end_s = end;
+void set_standstills(const SimulateOptions& options, sim::SpeedConfig& speed) {
+  const std::vector<double>& times = options.standstill_s;
+  const auto count = static_cast<double>(times.size());
+  require(times.size() % 2 == 0 && times.size() / 2 <= speed.standstills.size(), "--standstill",
+          count, fmt::format("a start and an end of at most {}", speed.standstills.size()));
+  // Time to start and to brake again lies between two of them.
+  const double apart_s = 2.0 * speed.speed_mps / speed.ramp_mps2;
+  double earliest_s = 0.0;
+  for (std::size_t i = 0; 2 * i < times.size(); ++i) {
+    const double start = times[2 * i];
+    const double end = times[2 * i + 1];
+    require(within(start, earliest_s, end) && std::isfinite(end) && end > start, "--standstill",
+            start, fmt::format("a start of {:.0f} or more before the end ({})", earliest_s, end));
+    speed.standstills[i] = {start, end};
+    earliest_s = end + apart_s;
   }
+}
+
+void set_speed(const SimulateOptions& options, sim::SpeedConfig& speed) {
+  set_standstills(options, speed);
   if (!options.speed_change.empty()) {
     const double kmh = options.speed_change.at(1);
     require(within(options.speed_change.at(0), 0.0, std::numeric_limits<double>::max()),

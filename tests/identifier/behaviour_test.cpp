@@ -54,8 +54,7 @@ TEST(Identifier, KnowsARowsLatency) {
 
 TEST(Identifier, PausesAtAStandstill) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
-  config.speed.standstill_start_s = 60.0;
-  config.speed.standstill_end_s = 90.0;
+  config.speed.standstills[0] = {60.0, 90.0};
   const Snapshot s = identify(simulate(config, 150.0)).snapshot;
   EXPECT_GE(s.counts.blocks_still, 10U);
   EXPECT_GT(s.counts.rows_still, 0U);
@@ -67,8 +66,7 @@ TEST(Identifier, PausesAtAStandstill) {
 
 TEST(Identifier, SaysNothingOfACarThatNeverMoved) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 7);
-  config.speed.standstill_start_s = 0.0;
-  config.speed.standstill_end_s = 1000.0;
+  config.speed.standstills[0] = {0.0, 1000.0};
   auto record = simulate(config, 60.0);
   const Snapshot s = identify(record).snapshot;
   EXPECT_FALSE(s.valid);

@@ -133,6 +133,8 @@ TEST_F(SimulateVerb, RefusesWhatItDoesNotUnderstandAndSaysWhatItExpects) {
   o = options("a.log");
   o.standstill_s = {9.0, 3.0};
   EXPECT_THAT(usage_error(o), HasSubstr("--standstill: 9"));
+  o.standstill_s = {100.0, 200.0, 250.0, 300.0};
+  EXPECT_THAT(usage_error(o), HasSubstr("--standstill: 250, expected a start of 256 or more"));
   o = options("a.csv");
   o.faults = {"loss"};
   EXPECT_THAT(usage_error(o), HasSubstr("expected --format candump"));

@@ -120,8 +120,7 @@ TEST(Simulation, LetsTheSecondWheelsetFollowTheFirst) {
 
 TEST(Simulation, StandsStillAndChangesItsSpeed) {
   SimulationConfig config = reference_run(Load::kLaden, 80.0, 3);
-  config.speed.standstill_start_s = 40.0;
-  config.speed.standstill_end_s = 60.0;
+  config.speed.standstills[0] = {40.0, 60.0};
   config.speed.change_time_s = 100.0;
   Simulation simulation{config};
   double still = 0.0;
@@ -148,6 +147,15 @@ TEST(Simulation, StandsStillAndChangesItsSpeed) {
   EXPECT_LT(still, 1e-3);
   EXPECT_GT(moving_after, 10e-3);
   EXPECT_NEAR(last_speed, 60.0 / 3.6, 1e-9);
+}
+
+TEST(Simulation, StandsStillTwice) {
+  SpeedConfig config;
+  config.standstills = {{{100.0, 200.0}, {300.0, 400.0}}};
+  for (const double moving_s : {0.0, 50.0, 250.0, 450.0})
+    EXPECT_DOUBLE_EQ(speed_at(config, moving_s).speed_mps, config.speed_mps) << moving_s;
+  for (const double still_s : {101.0, 199.0, 301.0, 399.0})
+    EXPECT_EQ(speed_at(config, still_s).speed_mps, 0.0) << still_s;
 }
 
 TEST(Simulation, DecodesItsCountsAndMarksFullScale) {
