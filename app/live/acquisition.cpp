@@ -19,7 +19,8 @@ Acquisition::Acquisition(hal::FrameSource& source, const hal::Clock& clock, Truc
       assembler_{config.assembler},
       period_ns_{std::llround(1e9 / config.assembler.sample_rate_hz)},
       publish_interval_ns_{config.publish_interval_ns},
-      next_publish_ns_{clock.monotonic_ns() + config.publish_interval_ns},
+      read_interval_ns_{config.read_interval_ns},
+      next_publish_ns_{now_ns() + config.publish_interval_ns},
       items_{config.ring_items},
       newest_sample_ns_{now_ns()} {}
 
@@ -30,10 +31,11 @@ std::int64_t Acquisition::now_ns() const noexcept {
 void Acquisition::run() noexcept {
   bool more = true;
   while (more && !stop_.load(std::memory_order_acquire)) more = step();
-  // What had arrived before the stop belongs to the run.
+  // What had arrived before the stop belongs to the run, and what the kernel dropped last.
+  static_cast<void>(source_.wait(std::chrono::nanoseconds{0}));
   for (auto rest = source_.read(frames_); rest.ok() && rest.value() > 0;
        rest = source_.read(frames_))
-    take(rest.value());
+    static_cast<void>(take(rest.value()));
   take_events();
   note_faults();
   ended_.store(true, std::memory_order_release);
@@ -43,17 +45,26 @@ bool Acquisition::step() noexcept {
   const Result<std::size_t> count = source_.read(frames_);
   heartbeats_.fetch_add(1, std::memory_order_release);
   if (!count.ok() && count.error() == Errc::kEndOfStream) return false;
-  if (count.ok()) take(count.value());
+  const std::size_t frames = count.ok() ? count.value() : 0;
+  const std::int64_t now = take(frames);
   take_events();
-  watch_signal(now_ns());
-  publish_when_due(clock_.monotonic_ns());
-  if (count.ok() && count.value() > 0) return true;
-  if (!source_.wait(kPatience).ok())  // a source that cannot even wait must not spin
-    clock_.sleep_until(clock_.monotonic_ns() + std::chrono::nanoseconds{kPatience}.count());
+  watch_signal(now);
+  publish_when_due(now);
+  // A batch that is not full was the last one; a look for another would cost a system call.
+  if (frames < kBatch) rest();
   return true;
 }
 
-void Acquisition::take(std::size_t count) noexcept {
+void Acquisition::rest() noexcept {
+  const std::int64_t start_ns = clock_.monotonic_ns();
+  if (read_interval_ns_ > 0) {
+    clock_.sleep_until(start_ns + read_interval_ns_);
+  } else if (!source_.wait(kPatience).ok()) {  // what cannot even wait must not spin
+    clock_.sleep_until(start_ns + std::chrono::nanoseconds{kPatience}.count());
+  }
+}
+
+std::int64_t Acquisition::take(std::size_t count) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     item_.is_event = false;
     item_.frame = frames_[i];
@@ -67,6 +78,7 @@ void Acquisition::take(std::size_t count) noexcept {
     lateness_.add(late_ns);
     if (late_ns > period_ns_) ++slips_;
   }
+  return now;
 }
 
 void Acquisition::take_samples() noexcept {
@@ -100,10 +112,10 @@ void Acquisition::watch_signal(std::int64_t now_ns) noexcept {
   items_.push(item_);
 }
 
-void Acquisition::publish_when_due(std::int64_t monotonic_ns) noexcept {
-  if (monotonic_ns < next_publish_ns_) return;
+void Acquisition::publish_when_due(std::int64_t now_ns) noexcept {
+  if (now_ns < next_publish_ns_) return;
   next_publish_ns_ += publish_interval_ns_;
-  if (next_publish_ns_ <= monotonic_ns) next_publish_ns_ = monotonic_ns + publish_interval_ns_;
+  if (next_publish_ns_ <= now_ns) next_publish_ns_ = now_ns + publish_interval_ns_;
   note_faults();
   fill(status_.back());
   status_.publish();

@@ -32,6 +32,8 @@ struct LiveStatus {
 struct AcquisitionConfig {
   AssemblerConfig assembler;
   std::int64_t publish_interval_ns{10'000'000'000};
+  /// 0: frames are read as they arrive. Else so often: fewer wake-ups, later results.
+  std::int64_t read_interval_ns{0};
   std::size_t ring_items{16384};  ///< frames that may wait for the writer
 };
 
@@ -75,12 +77,14 @@ class Acquisition {
   static std::uint64_t load(const std::atomic<std::uint64_t>& counter) noexcept {
     return counter.load(std::memory_order_acquire);
   }
-  void take(std::size_t count) noexcept;
+  /// Returns the time when their results were there.
+  std::int64_t take(std::size_t count) noexcept;
+  void rest() noexcept;
   void take_samples() noexcept;
   void take_events() noexcept;
   void watch_signal(std::int64_t now_ns) noexcept;
   void note_faults() noexcept;
-  void publish_when_due(std::int64_t monotonic_ns) noexcept;
+  void publish_when_due(std::int64_t now_ns) noexcept;
   void fill(LiveStatus& status) noexcept;
   [[nodiscard]] std::int64_t now_ns() const noexcept;
 
@@ -90,7 +94,8 @@ class Acquisition {
   SampleAssembler assembler_;
   std::int64_t period_ns_;
   std::int64_t publish_interval_ns_;
-  std::int64_t next_publish_ns_;
+  std::int64_t read_interval_ns_;
+  std::int64_t next_publish_ns_;  // run time
   std::array<CanFrame, kBatch> frames_{};
   RecordItem item_{};
   RecordQueue items_;

@@ -90,8 +90,9 @@ void DigitalLines::open_lines(const GpioConfig& config, const hal::RunTime& run_
   std::vector<LineKind> kinds;
   for (const std::string& text : config.edges) {
     const LineSetting line = parse_edge_line(text);
-    const bool both = line.kind == LineKind::kMarker;
-    wanted.lines.push_back({line.offset, line.active_low, true, both});
+    // Both edges, of a pulse as well: that they alternate is the only sign of a loss that libgpiod
+    // 1 leaves.
+    wanted.lines.push_back({line.offset, line.active_low, true, true});
     kinds.push_back(line.kind);
   }
   if (!kinds.empty()) {
@@ -120,14 +121,26 @@ void DigitalLines::show(LiveState state, std::int64_t monotonic_ns) noexcept {
   if (lamp_) lamp_->show(lamp_state(state), monotonic_ns);
 }
 
+void DigitalLines::describe(RunResult& result) const {
+  if (!edges_) return;
+  const EdgeCounts& counts = events_->counts();
+  result.counts.insert(result.counts.end(), {{"edges", edges_->health().edges},
+                                             {"edges_lost", counts.lost},
+                                             {"edges_impossible", counts.impossible},
+                                             {"pulses_implausible", counts.implausible}});
+  if (gone_)
+    result.warnings.emplace_back(
+        "The GPIO chip could not be read any more: edges are missing from some moment on.");
+}
+
 void DigitalLines::watch(Recorder& recorder) {
   std::array<hal::Edge, 64> edges;
   while (!stop_.load(std::memory_order_acquire)) {
     const auto ready = edges_->wait(kPatience);
-    if (!ready.ok()) return;  // the chip is gone; what came until now is recorded
+    if (!ready.ok()) return gone();
     if (!ready.value()) continue;
     const auto count = edges_->read(edges);
-    if (!count.ok()) return;
+    if (!count.ok()) return gone();
     for (std::size_t i = 0; i < count.value(); ++i)
       for (const hal::Event& event : events_->take(edges[i])) recorder.add(event);
   }

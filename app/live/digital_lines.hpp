@@ -40,14 +40,18 @@ class DigitalLines {
   void start(Recorder& recorder);
   void stop();
   void show(LiveState state, std::int64_t monotonic_ns) noexcept;
+  /// Adds counts and warnings. After stop().
+  void describe(RunResult& result) const;
 
  private:
   void open_lines(const GpioConfig& config, const hal::RunTime& run_time);
   void watch(Recorder& recorder);
+  void gone() noexcept { gone_ = true; }
 
   std::unique_ptr<hal::EdgeSource> edges_;
   std::unique_ptr<EdgeEvents> events_;
   std::unique_ptr<StatusLamp> lamp_;
+  bool gone_{false};  // the thread's, until stop()
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -106,7 +106,9 @@ Identified identify_live(const Config& config, const std::string& interface,
               {interface, source.get(), sink.get(), &clock, run_time},
               live,
               std::move(outlets)};
-  return run.run();
+  Identified found = run.run();
+  lines.describe(found.result);
+  return found;
 }
 
 }  // namespace dampline::app

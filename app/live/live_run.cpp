@@ -20,6 +20,7 @@ AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const Liv
   AcquisitionConfig config;
   config.assembler = assembler;
   config.publish_interval_ns = std::llround(1e9 * options.publish_every_s);
+  config.read_interval_ns = std::llround(1e9 * options.read_every_s);
   return config;
 }
 
@@ -52,7 +53,7 @@ Identified LiveRun::run() {
   lock_memory(realtime_);
   recorder_.start();
   std::thread acquisition{[this] { acquire(); }};
-  while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
+  ready_.wait();
   if (outlets_.begin) outlets_.begin(recorder_);
   watch(signals);
   acquisition_->stop();
@@ -67,7 +68,7 @@ Identified LiveRun::run() {
 void LiveRun::acquire() {
   schedule_fifo(options_.realtime_priority, realtime_);
   prefault_stack();
-  ready_.store(true, std::memory_order_release);
+  ready_.count_down();
   acquisition_->run();
 }
 

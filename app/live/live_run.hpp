@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <latch>
 #include <string>
 
 #include "app/config/config.hpp"
@@ -19,6 +20,7 @@ namespace dampline::app {
 struct LiveOptions {
   double duration_s{0.0};  ///< 0: until a signal
   double publish_every_s{10.0};
+  double read_every_s{0.0};   ///< 0: frames are read as they arrive
   int realtime_priority{50};  ///< 0: ordinary scheduling
   bool record{true};          ///< the sink is a black box, not a void
 };
@@ -72,7 +74,7 @@ class LiveRun {
   Recorder recorder_;
   Monitor monitor_;
   Realtime realtime_;  // written before the threads are told apart, and by acquire()
-  std::atomic<bool> ready_{false};
+  std::latch ready_{1};
   std::int64_t start_ns_;
   std::int64_t silence_ns_{0};
   LiveState state_{LiveState::kWaiting};

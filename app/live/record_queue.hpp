@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <semaphore>
 
 #include "app/live/spsc_ring.hpp"
+#include "app/live/wake_call.hpp"
 #include "dampline/sample/can_frame.hpp"
 #include "hal/event.hpp"
 
@@ -31,13 +31,11 @@ class RecordQueue {
     if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_release);
     if (++since_call_ < ring_.capacity() / 4) return;
     since_call_ = 0;
-    if (!called_.exchange(true, std::memory_order_acq_rel)) call_.release();
+    call_.call();
   }
   // The writer's side.
   [[nodiscard]] bool pop(RecordItem& item) noexcept { return ring_.pop(item); }
-  void wait(std::chrono::nanoseconds most) noexcept {
-    if (call_.try_acquire_for(most)) called_.store(false, std::memory_order_release);
-  }
+  void wait(std::chrono::nanoseconds most) noexcept { call_.wait(most); }
   // Anybody's.
   [[nodiscard]] std::uint64_t lost() const noexcept {
     return lost_.load(std::memory_order_acquire);
@@ -47,8 +45,7 @@ class RecordQueue {
   SpscRing<RecordItem> ring_;
   std::size_t since_call_{0};
   std::atomic<std::uint64_t> lost_{0};
-  std::atomic<bool> called_{false};
-  std::binary_semaphore call_{0};
+  WakeCall call_;
 };
 
 }  // namespace dampline::app

@@ -27,7 +27,7 @@ constexpr std::array<Entry, 13> kParameters{{
     {"noise", "sensor noise of one channel, rms"},
 }};
 
-constexpr std::array<Entry, 32> kCounts{{
+constexpr std::array<Entry, 36> kCounts{{
     {"samples", "samples read"},
     {"gaps", "gaps in the sequence"},
     {"lost", "samples lost in the gaps"},
@@ -59,6 +59,10 @@ constexpr std::array<Entry, 32> kCounts{{
     {"incomplete", "instants that lacked a channel"},
     {"restarts", "long pauses after which the channels were aligned anew"},
     {"lines_malformed", "malformed lines, skipped on request"},
+    {"edges", "edges of the digital lines"},
+    {"edges_lost", "edges known to be lost"},
+    {"edges_impossible", "edges that followed one of their own direction"},
+    {"pulses_implausible", "pulses per second that were not 1 s apart"},
     {"frames_reordered", "frames with a time before that of the frame ahead of them"},
 }};
 

@@ -65,10 +65,10 @@ void print_result(const Options& options, const RunResult& result,
 
 void check_live_flags(const Options& options, SourceKind kind) {
   if (options.any_live_flag && kind != SourceKind::kInterface)
-    throw UsageError{
-        fmt::format("{}: is a record; --duration, --publish-every, --blackbox, --no-blackbox and "
-                    "--realtime-priority are for an interface",
-                    options.source.path)};
+    throw UsageError{fmt::format(
+        "{}: is a record; --duration, --publish-every, --read-every, --blackbox, --no-blackbox and "
+        "--realtime-priority are for an interface",
+        options.source.path)};
   if (options.no_blackbox && !options.blackbox.empty())
     throw UsageError{"--blackbox and --no-blackbox exclude each other"};
 }
@@ -115,6 +115,11 @@ void add_live_flags(CLI::App& verb, Options& options) {
         verb.add_option("--publish-every", live.publish_every_s,
                         "s between two versions of live.json")
             ->check(CLI::Range(0.1, kHundredYearsS))
+            ->capture_default_str(),
+        verb.add_option("--read-every", live.read_every_s,
+                        "s between two looks at the bus: fewer wake-ups, later results; 0: as "
+                        "frames arrive")
+            ->check(CLI::Range(0.0, 1.0))
             ->capture_default_str(),
         verb.add_option("--blackbox", options.blackbox,
                         "record frames and events here; default: blackbox in the run directory"),
