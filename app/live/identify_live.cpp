@@ -108,6 +108,9 @@ Identified identify_live(const Config& config, const std::string& interface,
               std::move(outlets)};
   Identified found = run.run();
   lines.describe(found.result);
+  found.inputs.push_back({interface, "interface", 0, ""});
+  if (!config.input.can.dbc.empty())
+    found.inputs.push_back(describe_input(config.input.can.dbc, "dbc"));
   return found;
 }
 

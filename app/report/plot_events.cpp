@@ -25,18 +25,18 @@ PlotScript plot_events(const RunResult& result) {
   for (const auto& [name, moments] : times) {
     const std::size_t stride = (moments.size() + kMostTicks - 1) / kMostTicks;
     for (std::size_t i = 0; i < moments.size(); i += stride)
-      script += fmt::format("{} {} {} {}\n", moments[i], row, static_cast<double>(row) - 0.3,
-                            static_cast<double>(row) + 0.3);
+      script += fmt::format("{} {} 0 0.6\n", moments[i], static_cast<double>(row) - 0.3);
     labels += fmt::format("{}'{}' {}", row == 0 ? "" : ",", plot_label(name), row);
     ++row;
   }
   const double first = std::min(0.0, result.events.front().time_s);
   const double last = std::max(result.duration_s, result.events.back().time_s);
+  const double margin = 0.01 * (last - first);
   script += fmt::format(
       "EOD\nset xrange [{}:{}]\nset yrange [-0.6:{}]\nset ytics scale 0 ({})\nunset grid\n"
       "set xlabel 'time in the record (s)'\n"
-      "plot $events using 1:2:3:4 with yerrorbars pt -1 lw 1.6 lc rgb '{}'\n",
-      first, last, static_cast<double>(row) - 0.4, labels, kPlotBlue);
+      "plot $events using 1:2:3:4 with vectors nohead lw 1.6 lc rgb '{}'\n",
+      first - margin, last + margin, static_cast<double>(row) - 0.4, labels, kPlotBlue);
   return {script, 960, 90 + 32 * static_cast<int>(row)};
 }
 

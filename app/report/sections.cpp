@@ -113,9 +113,9 @@ std::string excluded_section(const RunResult& result) {
 std::string provenance_section(const Provenance& provenance, const std::string& run_toml) {
   std::vector<std::vector<std::string>> rows;
   for (const InputFile& input : provenance.inputs)
-    rows.push_back(
-        {input.role, input.name, input.sha256.empty() ? "" : format_count(input.bytes) + " bytes",
-         input.sha256.empty() ? "read from a pipe: no checksum" : "sha256 " + input.sha256});
+    rows.push_back({input.role, input.name,
+                    input.sha256.empty() ? "" : format_count(input.bytes) + " bytes",
+                    input.sha256.empty() ? "no file: no checksum" : "sha256 " + input.sha256});
   return html_table({"input", "name", "size", "checksum"}, rows, 0) +
          fmt::format(
              "<p class=\"note\">dampline {}</p>\n<details><summary>Complete configuration "
