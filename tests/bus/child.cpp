@@ -82,7 +82,7 @@ Ended Child::wait(std::chrono::nanoseconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (running()) {
     if (std::chrono::steady_clock::now() > deadline) signal(SIGKILL);
-    std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
   }
   return {status_, output(), error()};
 }

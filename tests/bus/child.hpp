@@ -33,6 +33,7 @@ class Child {
   /// What it has printed until now.
   [[nodiscard]] std::string output() const;
   [[nodiscard]] std::string error() const;
+  [[nodiscard]] const std::filesystem::path& output_file() const noexcept { return output_; }
 
  private:
   std::filesystem::path output_;
