@@ -36,6 +36,7 @@ class LiveProgram {
               const Words& options = {});
   /// Memory that it holds, by its name in /proc/PID/status, in KiB.
   [[nodiscard]] std::uint64_t memory_kib(const std::string& name) const;
+  void signal(int number) const noexcept { child_.signal(number); }
   [[nodiscard]] const std::filesystem::path& run() const noexcept { return run_; }
   /// Ends it by SIGINT. Throws when it does not end well; returns parameters.json.
   nlohmann::json stop();

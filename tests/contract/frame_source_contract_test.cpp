@@ -136,6 +136,17 @@ class Simulated {
       std::make_unique<sim::SimulatedSource>(sim::SimulationConfig{}, kFrames / kChannels);
 };
 
+/// Frames of one message overtake each other on the way.
+class SimulatedSwapping {
+ public:
+  hal::FrameSource& source() { return *source_; }
+
+ private:
+  std::unique_ptr<sim::SimulatedSource> source_ = std::make_unique<sim::SimulatedSource>(
+      sim::SimulationConfig{}, kFrames / kChannels, sim::NodeConfig{},
+      sim::TransportConfig{.swap_time_s = 0.1});
+};
+
 /// With events among the frames, in several files.
 class BlackboxFolder {
  public:
@@ -197,8 +208,8 @@ class FrameSourceContract : public ::testing::Test {
   Implementation implementation_;
 };
 
-using Implementations =
-    ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated, BlackboxFolder, DamagedBlackbox>;
+using Implementations = ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated,
+                                         SimulatedSwapping, BlackboxFolder, DamagedBlackbox>;
 TYPED_TEST_SUITE(FrameSourceContract, Implementations);
 
 TYPED_TEST(FrameSourceContract, DeliversFramesInNonDecreasingTime) {

@@ -26,6 +26,7 @@ enum class Call : std::uint8_t {
   kFlock,
   kMmap,
   kMlockall,
+  kSetschedparam,  ///< of pthread; returns the error
   kFcntl,
   kPpoll,
   kGpio,  ///< any call of libgpiod that the driver makes and that can fail

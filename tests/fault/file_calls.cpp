@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The wraps of calls for files and memory.
+#include <pthread.h>
 #include <sys/types.h>
 
+#include <cerrno>
 #include <cstdarg>
 
 #include "tests/fault/can_kernel.hpp"
@@ -37,6 +39,7 @@ int __real_flock(int file, int operation);
 void* __real_mmap(void* at, size_t bytes, int protection, int flags, int file, off_t offset);
 void* __real_mmap64(void* at, size_t bytes, int protection, int flags, int file, off_t offset);
 int __real_mlockall(int flags);
+int __real_pthread_setschedparam(pthread_t thread, int policy, const sched_param* parameter);
 
 // The mode is there only with O_CREAT; reading it without is harmless on every ABI that we build
 // for, and passing it on is, too.
@@ -124,6 +127,10 @@ void* __wrap_mmap64(void* at, size_t bytes, int protection, int flags, int file,
   return __real_mmap64(at, bytes, protection, flags, file, offset);
 }
 int __wrap_mlockall(int flags) { return must_fail(Call::kMlockall) ? -1 : __real_mlockall(flags); }
+int __wrap_pthread_setschedparam(pthread_t thread, int policy, const sched_param* parameter) {
+  if (must_fail(Call::kSetschedparam)) return errno;
+  return __real_pthread_setschedparam(thread, policy, parameter);
+}
 
 #undef DAMPLINE_MODE
 }
