@@ -141,8 +141,12 @@ TEST(BlackboxDamage, PowerCutsAtEveryByteLoseNothingThatWasSyncedAndInventNothin
          {std::string(600, '\0'), std::string(600, '\xff'), garbage,
           other.bytes().substr(kRecordsAt), box.bytes().substr(kRecordsAt, 200),
           std::string(5000, static_cast<char>(0xDB))}) {
-      const BoxContent content = box.with(kept + tail);
-      ASSERT_EQ(content.numbers(), box.beside(cut, box.bytes().size())) << cut;
+      const std::string bytes = kept + tail;
+      const BoxContent content = box.with(bytes);
+      // By chance the tail may begin with the very bytes that were cut off.
+      const auto same = std::ranges::mismatch(bytes, box.bytes()).in1 - bytes.begin();
+      const auto expected = box.beside(static_cast<std::size_t>(same), box.bytes().size());
+      ASSERT_EQ(content.numbers(), expected) << cut;
       ASSERT_TRUE(content.all_true()) << cut;
       ASSERT_TRUE(content.health.truncated) << cut;
     }
