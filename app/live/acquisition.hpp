@@ -40,7 +40,7 @@ struct AcquisitionConfig {
 /// The loop that must keep up: frames from the source to the writer's ring and through assembler
 /// and identification. After construction it allocates nothing and opens nothing. One thread calls
 /// step() or run(); the other methods say who may call them.
-class Acquisition {
+class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds such a queue
  public:
   static constexpr std::int64_t kSignalLostNs = 1'000'000'000;
   static constexpr std::uint64_t kWarmUpSamples = 3000;
