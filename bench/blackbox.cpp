@@ -52,7 +52,7 @@ void put(hal::RecordSink& writer, std::int64_t i) {
 void write_frame(benchmark::State& state) {
   const auto writer = open_writer();
   std::int64_t i = 0;
-  for (auto _ : state) put(*writer, i++);
+  while (state.KeepRunning()) put(*writer, i++);
   writer->close();
   state.counters["MB_per_hour"] = static_cast<double>(writer->health().bytes) * 1e-6 *
                                   static_cast<double>(kFrames) / static_cast<double>(i);
@@ -66,7 +66,7 @@ void read_frame(benchmark::State& state) {
   writer->close();
   std::array<CanFrame, 256> frames;
   std::int64_t count = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     auto source = drivers::BlackboxSource::open({folder(), {}});
     for (auto read = source.value()->read(frames); read.ok(); read = source.value()->read(frames))
       count += static_cast<std::int64_t>(read.value());

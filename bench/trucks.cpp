@@ -21,7 +21,7 @@
 namespace dampline {
 namespace {
 
-constexpr std::int64_t kRideTicks = 60 * 300;
+constexpr std::int64_t kRideTicks = std::int64_t{60} * 300;
 constexpr std::int64_t kPeriodNs = 1'000'000'000 / 300;
 
 struct Truck {
