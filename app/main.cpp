@@ -14,6 +14,7 @@
 #include "app/verbs/identify.hpp"
 #include "app/verbs/report.hpp"
 #include "app/verbs/simulate.hpp"
+#include "app/verbs/verify.hpp"
 
 namespace {
 
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   dampline::app::add_simulate_verb(program, action);
   dampline::app::add_report_verb(program, action);
   dampline::app::add_export_verb(program, action);
+  dampline::app::add_verify_verb(program, action);
   dampline::app::add_config_verb(program, action);
   try {
     program.parse(argc, argv);
