@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "app/error.hpp"
@@ -52,6 +53,13 @@ AssemblerConfig can_channels(const Config& config) {
                     "outside its frame, or the rate is out of range",
                     dbc.file, config.input.sample_rate_hz)};
   return assembler;
+}
+
+ScreenConfig screen_of(const std::array<ChannelConfig, kChannels>& channels) {
+  ScreenConfig screen;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    screen.step_mps2[c] = std::fabs(channels[c].accel.scale);
+  return screen;
 }
 
 }  // namespace dampline::app

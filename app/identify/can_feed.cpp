@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <optional>
 
 #include "app/error.hpp"
@@ -44,12 +43,7 @@ class CanFeed final : public SampleFeed {
     return false;
   }
   [[nodiscard]] MeasuredRate rate() const override { return assembler_->measured_rate(); }
-  [[nodiscard]] ScreenConfig screen() const override {
-    ScreenConfig screen;
-    for (std::size_t c = 0; c < kChannels; ++c)
-      screen.step_mps2[c] = std::fabs(wanted_[c].accel.scale);
-    return screen;
-  }
+  [[nodiscard]] ScreenConfig screen() const override { return screen_of(wanted_); }
   [[nodiscard]] std::uint64_t lines() const override {
     if constexpr (requires { source_->line_number(); }) return source_->line_number();
     return 0;

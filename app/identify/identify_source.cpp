@@ -13,7 +13,6 @@
 #include "app/identify/truck_run.hpp"
 #include "app/rig/csv_rig_source.hpp"
 #include "app/rig/identify_rig.hpp"
-#include "app/run/state_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -64,9 +63,7 @@ Identified identify_truck(const Config& config, const SourceOptions& source, Sou
   out.result = run.finish(feed->rate(), source.path);
   feed->describe(out.result);
   out.inputs = feed->extra_inputs();
-  const auto statistics = std::make_unique<Statistics>();
-  run.export_statistics(*statistics);
-  out.state = encode_state(*statistics);
+  out.state = run.encoded_state();
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/error.hpp"
 #include "app/identify/truck_result.hpp"
+#include "app/run/state_file.hpp"
 #include "app/text/quantity.hpp"
 
 namespace dampline::app {
@@ -142,6 +143,12 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
   return result;
+}
+
+std::string TruckRun::encoded_state() {
+  const auto statistics = std::make_unique<Statistics>();
+  identifier_->export_statistics(*statistics);
+  return encode_state(*statistics);
 }
 
 void TruckRun::fail_unusable(const Snapshot& snapshot, const std::string& source) const {

@@ -54,8 +54,8 @@ class TruckRun {
   [[nodiscard]] double time_s() const noexcept;
   /// For the progress line: the newest row of the history, or null.
   [[nodiscard]] const ConvergenceHistory::Row* newest() const noexcept;
-  /// The sufficient statistics, for state.dls. Call after finish().
-  void export_statistics(Statistics& out) { identifier_->export_statistics(out); }
+  /// The sufficient statistics as state.dls holds them. Call after finish().
+  [[nodiscard]] std::string encoded_state();
 
  private:
   static constexpr std::size_t kStatuses = 7;

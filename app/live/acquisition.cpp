@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 namespace dampline::app {
 namespace {
@@ -25,7 +26,8 @@ Acquisition::Acquisition(hal::FrameSource& source, const hal::Clock& clock, Truc
       newest_sample_ns_{now_ns()} {}
 
 std::int64_t Acquisition::now_ns() const noexcept {
-  return source_.now_ns().value_or(clock_.realtime_ns());
+  const std::optional<std::int64_t> now = source_.now_ns();
+  return now ? *now : clock_.realtime_ns();
 }
 
 void Acquisition::run() noexcept {
@@ -145,7 +147,7 @@ void Acquisition::finish() noexcept {
 }
 
 LiveStatus Acquisition::final_status() noexcept {
-  LiveStatus status = status_.back();
+  LiveStatus status;
   fill(status);
   return status;
 }

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/live/identify_live.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
-#include <set>
+#include <cmath>
 
 #include "app/error.hpp"
 #include "app/identify/can_channels.hpp"
@@ -14,6 +11,7 @@
 #include "app/live/void_sink.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/parameters_json.hpp"
+#include "app/text/warn.hpp"
 #include "drivers/blackbox/blackbox_writer.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/can_link.hpp"
@@ -23,8 +21,6 @@ namespace dampline::app {
 namespace {
 
 constexpr std::int64_t kKib = 1024;
-
-void warn(const std::string& text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
 
 std::unique_ptr<drivers::SocketCanSource> open_bus(const Config& config,
                                                    const std::string& interface,

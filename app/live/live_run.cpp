@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "app/error.hpp"
+#include "app/identify/can_channels.hpp"
 #include "app/identify/frame_counts.hpp"
-#include "app/run/state_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -24,13 +24,6 @@ AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const Liv
   return config;
 }
 
-ScreenConfig screen_of(const AssemblerConfig& assembler) {
-  ScreenConfig screen;
-  for (std::size_t c = 0; c < kChannels; ++c)
-    screen.step_mps2[c] = std::fabs(assembler.channels[c].accel.scale);
-  return screen;
-}
-
 }  // namespace
 
 LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const LiveParts& parts,
@@ -40,7 +33,7 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       parts_{parts},
       options_{options},
       outlets_{std::move(outlets)},
-      truck_{config, screen_of(assembler)},
+      truck_{config, screen_of(assembler.channels)},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},
       recorder_{*parts.sink, *parts.clock, acquisition_->items()},
@@ -119,9 +112,7 @@ Identified LiveRun::conclude() {
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
   recorder_.events().describe(truck_.first_time_ns(), out.result);
-  const auto statistics = std::make_unique<Statistics>();
-  truck_.export_statistics(*statistics);
-  out.state = encode_state(*statistics);
+  out.state = truck_.encoded_state();
   return out;
 }
 

@@ -50,16 +50,12 @@ void Recorder::turn() noexcept {
       sink_.write(item.frame);
       continue;
     }
-    sink_.write(item.event);
-    events_.add(item.event);
+    keep(item.event);
   }
   take_lost();
   {
     const std::lock_guard lock{others_mutex_};
-    for (const hal::Event& event : others_) {
-      sink_.write(event);
-      events_.add(event);
-    }
+    for (const hal::Event& event : others_) keep(event);
     others_.clear();
   }
   if (rotate_.exchange(false, std::memory_order_acq_rel)) sink_.rotate();
@@ -71,9 +67,12 @@ void Recorder::turn() noexcept {
 void Recorder::take_lost() noexcept {
   const std::uint64_t lost = items_.lost();
   if (lost == known_lost_) return;
-  const hal::Event event{newest_ns_, hal::EventKind::kRecordsLost, 0,
-                         static_cast<std::int64_t>(lost - known_lost_)};
+  keep(
+      {newest_ns_, hal::EventKind::kRecordsLost, 0, static_cast<std::int64_t>(lost - known_lost_)});
   known_lost_ = lost;
+}
+
+void Recorder::keep(const hal::Event& event) noexcept {
   sink_.write(event);
   events_.add(event);
 }

@@ -37,6 +37,7 @@ class Recorder {
   void loop() noexcept;
   void turn() noexcept;
   void take_lost() noexcept;
+  void keep(const hal::Event& event) noexcept;
 
   hal::RecordSink& sink_;
   const hal::Clock& clock_;

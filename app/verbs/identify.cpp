@@ -20,6 +20,7 @@
 #include "app/run/parameters_json.hpp"
 #include "app/run/run_toml.hpp"
 #include "app/text/summary.hpp"
+#include "app/text/warn.hpp"
 
 namespace dampline::app {
 namespace {
@@ -37,8 +38,6 @@ struct Options {
   bool no_blackbox{false};
   bool any_live_flag{false};
 };
-
-void warn(const std::string& text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
 
 std::filesystem::path place_of(const Options& options) {
   if (!options.out.empty()) return options.out;

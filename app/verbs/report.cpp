@@ -12,6 +12,7 @@
 #include "app/report/page.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
+#include "app/text/warn.hpp"
 
 namespace dampline::app {
 namespace {
@@ -21,7 +22,7 @@ int rebuild_report(const std::filesystem::path& run) {
   const Provenance provenance = read_provenance(files.run_toml, (run / "run.toml").string());
   const Page page = make_page(files.result, provenance, files.run_toml);
   write_file(run / "report.html", page.html);
-  if (!page.warning.empty()) fmt::print(stderr, "dampline: warning: {}\n", page.warning);
+  if (!page.warning.empty()) warn(page.warning);
   fmt::print("{}\n", (run / "report.html").string());
   return 0;
 }

@@ -59,12 +59,10 @@ Outcome<BlackboxShelf> BlackboxShelf::scan(const std::filesystem::path& director
     shelf.add(file.number, file.bytes, created_ns);
   }
   if (!found.empty()) shelf.next_number_ = found.back().number + 1;
-  for (auto file = found.rbegin(); file != found.rend(); ++file) {
-    const auto end = end_of(reader, file->path.c_str());
-    if (!end) continue;
-    shelf.next_sequence_ = *end;
-    break;
-  }
+  std::optional<std::uint64_t> end;
+  for (std::size_t i = found.size(); i > 0 && !end; --i)
+    end = end_of(reader, found[i - 1].path.c_str());
+  if (end) shelf.next_sequence_ = *end;
   return shelf;
 }
 

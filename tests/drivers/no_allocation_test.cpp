@@ -42,6 +42,17 @@ TEST(NoAllocation, TheCounterFires) {
   EXPECT_EQ(after, before + 1);
 }
 
+/// How many frames there were.
+std::size_t read_without_allocation(hal::FrameSource& source) {
+  std::array<CanFrame, 64> frames;
+  std::size_t count = 0;
+  const std::uint64_t before = allocations;
+  for (auto read = source.read(frames); read.ok(); read = source.read(frames))
+    count += read.value();
+  EXPECT_EQ(allocations - before, 0U);
+  return count;
+}
+
 TEST(NoAllocation, ReadingACandumpLog) {
   std::string text = "# comment\n";
   for (int i = 0; i < 20000; ++i) {
@@ -50,13 +61,7 @@ TEST(NoAllocation, ReadingACandumpLog) {
   }
   const testing::TemporaryFile file{text};
   auto source = CandumpSource::open({.path = file.path(), .skip_bad_lines = true});
-  std::array<CanFrame, 64> frames;
-  std::size_t count = 0;
-  const std::uint64_t before = allocations;
-  for (auto read = source.value()->read(frames); read.ok(); read = source.value()->read(frames))
-    count += read.value();
-  EXPECT_EQ(allocations - before, 0U);
-  EXPECT_EQ(count, 20000U);
+  EXPECT_EQ(read_without_allocation(*source.value()), 20000U);
 }
 
 TEST(NoAllocation, ReadingATable) {
@@ -96,13 +101,7 @@ TEST(NoAllocation, ReadingABlackBoxFromFileToFile) {
   bytes[5000] = static_cast<char>(~bytes[5000]);
   testing::write_bytes(folder.file(1), bytes);
   auto source = BlackboxSource::open({folder.path(), {}});
-  std::array<CanFrame, 64> frames;
-  std::size_t count = 0;
-  const std::uint64_t before = allocations;
-  for (auto read = source.value()->read(frames); read.ok(); read = source.value()->read(frames))
-    count += read.value();
-  EXPECT_EQ(allocations - before, 0U);
-  EXPECT_EQ(count, 19'999U);
+  EXPECT_EQ(read_without_allocation(*source.value()), 19'999U);
   EXPECT_GT(source.value()->findings().files, 5U);
 }
 

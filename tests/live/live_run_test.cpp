@@ -11,7 +11,6 @@
 
 #include "app/error.hpp"
 #include "app/identify/can_channels.hpp"
-#include "app/run/state_file.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/presets.hpp"
@@ -100,10 +99,7 @@ class LiveRunTest : public ::testing::Test {
 /// The same frames without threads.
 std::string state_of(hal::FrameSource& source) {
   const AssemblerConfig config = can_channels({});
-  ScreenConfig screen;
-  for (std::size_t c = 0; c < kChannels; ++c)
-    screen.step_mps2[c] = std::fabs(config.channels[c].accel.scale);
-  TruckRun truck{{}, screen};
+  TruckRun truck{{}, screen_of(config.channels)};
   const auto assembler = std::make_unique<SampleAssembler>(config);
   Sample sample;
   std::array<CanFrame, 7> frames;
@@ -116,9 +112,7 @@ std::string state_of(hal::FrameSource& source) {
   assembler->flush();
   while (assembler->pop(sample)) truck.take(sample);
   static_cast<void>(truck.finish(assembler->measured_rate(), "reference"));
-  const auto statistics = std::make_unique<Statistics>();
-  truck.export_statistics(*statistics);
-  return encode_state(*statistics);
+  return truck.encoded_state();
 }
 
 TEST_F(LiveRunTest, GivesTheSameBytesAsTheSameFramesWithoutThreads) {

@@ -1,32 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
+#include "tests/proof/command.hpp"
+
 namespace dampline::service {
 
-struct Ended {
-  int status{-1};      ///< 127: there is no such program
-  std::string output;  ///< standard output and standard error
-};
+using Ended = proof::CommandResult;
 
+/// With the standard error in the output; status 127: there is no such program.
 inline Ended shell(const std::string& command) {
-  std::FILE* const pipe = ::popen(("{ " + command + "; } 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::string output;
-  std::array<char, 4096> chunk{};
-  while (const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), pipe)) {
-    output.append(chunk.data(), got);
-  }
-  const int ended = ::pclose(pipe);
-  return {WIFEXITED(ended) ? WEXITSTATUS(ended) : -1, output};
+  return proof::run_command("{ " + command + "; } 2>&1");
 }
 
 /// For a shell; a path with a quote in it is not foreseen.
