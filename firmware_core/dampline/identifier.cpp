@@ -184,13 +184,17 @@ void Identifier::take_velocity(std::int64_t n, double velocity_mps, UpdateResult
       activity_ < kStillMps * kStillMps || input_activity_ < kQuietInputMps2 * kQuietInputMps2;
   count_velocity(velocity_mps, still);
   velocity_mps_[history(n)] = velocity_mps;
+  still_[history(n)] = still;
   double deflection_m = 0.0;
   if (deflection_.update(velocity_mps, deflection_m)) {
     const std::int64_t then = n - deflection_.delay();
     result.has_motion = true;
     result.motion = {.tick = stretch_tick_ + then,
                      .deflection_m = deflection_m,
-                     .velocity_mps = velocity_mps_[history(then)]};
+                     .velocity_mps = velocity_mps_[history(then)],
+                     .frame_mps2 = rows_.frame_mps2(then),
+                     .relative_mps2 = rows_.relative_mps2(then),
+                     .still = still_[history(then)]};
   }
   const auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
   if (!average_.complete()) return;

@@ -4,19 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/motion/motion.hpp"
+
 namespace dampline {
 
 /// A number and its standard deviation, in the same unit.
 struct Estimate {
   double value{0.0};
   double std{0.0};
-};
-
-/// Relative deflection y = 2 z_b - (z_1 + z_2) and its rate, some seconds after the sample.
-struct Motion {
-  std::int64_t tick{0};  ///< the sample that this is the motion of
-  double deflection_m{0.0};
-  double velocity_mps{0.0};
 };
 
 inline constexpr std::size_t kCurveSegments = 8;

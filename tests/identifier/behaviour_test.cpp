@@ -37,6 +37,46 @@ TEST(Identifier, GivesMotionOfAnEarlierSampleAtAConstantLag) {
   EXPECT_LT(identifier->velocity_latency_s(), 3.0);
 }
 
+class MotionAtRate : public testing::TestWithParam<double> {};
+
+// At the highest rate the accelerations have to be kept longest.
+TEST_P(MotionAtRate, CarriesTheAccelerationsOfItsOwnSample) {
+  const auto identifier =
+      std::make_unique<Identifier>(IdentifierConfig{.sample_rate_hz = GetParam()});
+  int motions = 0;
+  for (std::int64_t tick = 0; tick < 6000; ++tick) {
+    const double t = static_cast<double>(tick);
+    Sample sample{.tick = tick};
+    sample.accel_mps2 = {std::sin(0.1 * t), std::sin(0.07 * t) + 0.01 * t, std::cos(0.05 * t)};
+    const UpdateResult result = identifier->update(sample);
+    if (!result.has_motion) continue;
+    ++motions;
+    const auto then = static_cast<double>(result.motion.tick);
+    const double input = -(std::sin(0.07 * then) + 0.01 * then + std::cos(0.05 * then));
+    ASSERT_DOUBLE_EQ(result.motion.frame_mps2, std::sin(0.1 * then));
+    ASSERT_NEAR(result.motion.input_mps2(), input, 1e-12);
+  }
+  EXPECT_GT(motions, 2000);
+}
+INSTANTIATE_TEST_SUITE_P(Rates, MotionAtRate, testing::Values(150.0, 300.0, 400.0));
+
+TEST(Identifier, TellsStandstillFromMotion) {
+  auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
+  config.speed.standstills[0] = {60.0, 90.0};
+  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  int still_at_rest = 0;
+  int still_under_way = 0;
+  for (const Sample& sample : simulate(config, 100.0)) {
+    const UpdateResult result = identifier->update(sample);
+    if (!result.has_motion || !result.motion.still) continue;
+    const double time_s = static_cast<double>(result.motion.tick) / 300.0;
+    if (time_s > 60.0 && time_s < 90.0) ++still_at_rest;
+    if (time_s > 5.0 && time_s < 15.0) ++still_under_way;
+  }
+  EXPECT_GT(still_at_rest, 29 * 300);
+  EXPECT_EQ(still_under_way, 0);
+}
+
 TEST(Identifier, KnowsARowsLatency) {
   // The row whose centre lies in the last stride of block 0 is counted when its reach is complete.
   const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});

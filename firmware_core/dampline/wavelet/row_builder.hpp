@@ -24,6 +24,12 @@ class RowBuilder {
     relative_mps2_[raw(n)] = relative_mps2;
   }
 
+  /// Of the last 2048 samples.
+  [[nodiscard]] double frame_mps2(std::int64_t n) const noexcept { return frame_mps2_[raw(n)]; }
+  [[nodiscard]] double relative_mps2(std::int64_t n) const noexcept {
+    return relative_mps2_[raw(n)];
+  }
+
   /// The law's columns at sample n, and whether the truck stood still then.
   void set_law(std::int64_t n, const LawColumns::Values& values, bool still) noexcept {
     law_[law(n)] = values;
