@@ -11,33 +11,48 @@ namespace {
 constexpr double kStepS = 1.0 / kStepRateHz;
 constexpr std::int64_t kDecimation = kStepRateHz / kSampleRateHz;
 constexpr double kTrackMarginM = 0.5;
+constexpr std::uint64_t kTrailingSensors = 0x5bd1e995a7f3c2d1ULL;  // their noise is their own
 
 Truth instant_of(const TruckState& state) {
   return {state.deflection_m, state.velocity_mps, state.damping_force_n, state.restoring_force_n,
           state.frame_mps2};
 }
 
+double pivot_distance_m(const SimulationConfig& config) {
+  return config.vehicle ? 2.0 * config.vehicle->half_pivot_distance_m : 0.0;
+}
+
+bool is_trailing(const SimulationConfig& config) {
+  return config.vehicle && config.vehicle->instrumented == TruckPosition::kTrailing;
+}
+
+std::uint64_t sensor_seed(const SimulationConfig& config) {
+  return is_trailing(config) ? config.seed ^ kTrailingSensors : config.seed;
+}
+
 }  // namespace
 
 Simulation::Simulation(const SimulationConfig& config)
     : config_(config),
-      track_(config.track, config.truck.wheelbase_m + kTrackMarginM, config.seed),
+      instrumented_(is_trailing(config) ? 1 : 0),
+      track_(config.track, config.truck.wheelbase_m + pivot_distance_m(config) + kTrackMarginM,
+             config.seed),
       truck_(config.truck),
       shocks_(config.impulses, config.seed),
       anti_alias_(config.sensors.anti_alias_corner_hz, kStepRateHz),
-      sensors_(config.sensors, config.seed),
+      sensors_(config.sensors, sensor_seed(config)),
       history_(kHistory) {
   settle_steps_ = std::llround(config.settle_s * kSampleRateHz) * kDecimation;
   const auto& skew = config.sensors.time_skew_s;
   has_skew_ = std::ranges::any_of(skew, [](double s) { return s != 0.0; });
   const double earliest = -std::min(0.0, std::ranges::min(skew));
   if (has_skew_) look_ahead_ = static_cast<std::int64_t>(std::ceil(earliest * kStepRateHz)) + 2;
-  now_ = excitation(-config.settle_s, 0.0, speed_at(config.speed, -config.settle_s));
+  if (config.vehicle) vehicle_.emplace(*config.vehicle, config.truck);
+  now_ = excitations(-config.settle_s, 0.0, speed_at(config.speed, -config.settle_s));
   for (std::int64_t i = 0; i < settle_steps_ + look_ahead_; ++i) step();
 }
 
-Excitation Simulation::excitation(double time_s, double position_m, const Speed& speed) {
-  track_.extend_to(position_m);
+Excitation Simulation::excitation(double position_m, const Speed& speed, bool first) const {
   const ImpulseEffects& impulses = config_.impulses;
   Excitation result;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -50,15 +65,34 @@ Excitation Simulation::excitation(double time_s, double position_m, const Speed&
     if (impulses.joint_depth_m != 0.0) {
       add(dip(place, impulses.joint_depth_m, impulses.joint_length_m, impulses.joint_spacing_m));
     }
-    if (i == 0 && impulses.flat_depth_m != 0.0) {
+    if (i == 0 && first && impulses.flat_depth_m != 0.0) {
       add(dip(place, impulses.flat_depth_m, impulses.flat_length_m,
               impulses.wheel_circumference_m));
     }
     result.wheelset_mps2[i] =
         point.curvature_pm * speed.speed_mps * speed.speed_mps + point.slope * speed.accel_mps2;
   }
-  result.force_n = shocks_.force_n(time_s);
   return result;
+}
+
+Simulation::Excitations Simulation::excitations(double time_s, double position_m,
+                                                const Speed& speed) {
+  track_.extend_to(position_m);
+  Excitations result;
+  result[0] = excitation(position_m, speed, true);
+  if (vehicle_) result[1] = excitation(position_m - pivot_distance_m(config_), speed, false);
+  result[instrumented_].force_n = shocks_.force_n(time_s);
+  return result;
+}
+
+const TruckState& Simulation::advance(const Excitations& middle, const Excitations& end,
+                                      double time_s) noexcept {
+  if (!vehicle_) {
+    truck_.step(now_[0], middle[0], end[0], time_s, kStepS);
+    return truck_.state();
+  }
+  vehicle_->step(now_, middle, end, kStepS);
+  return vehicle_->state(config_.vehicle->instrumented);
 }
 
 void Simulation::step() {
@@ -70,19 +104,20 @@ void Simulation::step() {
   const double half_way =
       position_m_ + kStepS / 24.0 * (5.0 * a.speed_mps + 8.0 * m.speed_mps - b.speed_mps);
   position_m_ += kStepS / 6.0 * (a.speed_mps + 4.0 * m.speed_mps + b.speed_mps);
-  const Excitation middle = excitation(time_s + 0.5 * kStepS, half_way, m);
-  const Excitation end = excitation(time_s + kStepS, position_m_, b);
-  truck_.step(now_, middle, end, time_s, kStepS);
+  const Excitations middle = excitations(time_s + 0.5 * kStepS, half_way, m);
+  const Excitations end = excitations(time_s + kStepS, position_m_, b);
+  const TruckState& state = advance(middle, end, time_s);
   now_ = end;
   ++steps_;
   Moment& moment = history_[static_cast<std::size_t>(steps_) % kHistory];
-  moment.instant = instant_of(truck_.state());
+  moment.instant = instant_of(state);
   moment.speed_mps = b.speed_mps;
-  moment.position_m = position_m_;
+  moment.position_m = is_trailing(config_) ? position_m_ - pivot_distance_m(config_) : position_m_;
   const Truth& t = moment.instant;
+  const auto& wheelset = end[instrumented_].wheelset_mps2;
   moment.filtered =
-      anti_alias_.update({t.frame_mps2, end.wheelset_mps2[0], end.wheelset_mps2[1], t.deflection_m,
-                          t.velocity_mps, t.damping_force_n, t.restoring_force_n, t.frame_mps2});
+      anti_alias_.update({t.frame_mps2, wheelset[0], wheelset[1], t.deflection_m, t.velocity_mps,
+                          t.damping_force_n, t.restoring_force_n, t.frame_mps2});
 }
 
 const Simulation::Moment& Simulation::past(std::int64_t steps) const noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dampline/sample/sample.hpp"
@@ -11,6 +12,7 @@
 #include "sim_hw/speed_profile.hpp"
 #include "sim_hw/track.hpp"
 #include "sim_hw/truck.hpp"
+#include "sim_hw/vehicle.hpp"
 
 namespace dampline::sim {
 
@@ -26,6 +28,9 @@ struct SimulationConfig {
   SensorConfig sensors{};
   ImpulseEffects impulses{};
   double settle_s{10.0};  ///< runs before time 0, so that the record begins in full motion
+  /// The truck as one of two under a common body; needs Vehicle::supports(truck). A flat is then
+  /// on the car's first wheelset, a shock hits the instrumented truck.
+  std::optional<VehicleConfig> vehicle{};
 };
 
 /// What really happened; for tests and plots only.
@@ -46,7 +51,7 @@ struct SimulatedSample {
   Truth truth{};    ///< through the anti-alias filter of the channels, so at the same delay
   Truth instant{};  ///< at time_s itself, unfiltered
   double speed_mps{0.0};
-  double position_m{0.0};  ///< of wheelset 1
+  double position_m{0.0};  ///< of wheelset 1 of the instrumented truck
 };
 
 /// Track, truck and sensors, sample by sample, for as long as wanted in constant memory.
@@ -65,14 +70,20 @@ class Simulation {
     double position_m{0.0};
   };
   static constexpr std::size_t kHistory = 128;  // 53 ms of steps
-  [[nodiscard]] Excitation excitation(double time_s, double position_m, const Speed& speed);
+  using Excitations = Vehicle::Excitations;     // without a vehicle the second is not used
+  [[nodiscard]] Excitations excitations(double time_s, double position_m, const Speed& speed);
+  [[nodiscard]] Excitation excitation(double position_m, const Speed& speed, bool first) const;
+  [[nodiscard]] const TruckState& advance(const Excitations& middle, const Excitations& end,
+                                          double time_s) noexcept;
   void step();
   [[nodiscard]] double skewed(std::size_t channel) const noexcept;
   [[nodiscard]] const Moment& past(std::int64_t steps) const noexcept;
 
   SimulationConfig config_;
+  std::size_t instrumented_;  // index of the truck with the sensors
   Track track_;
   Truck truck_;
+  std::optional<Vehicle> vehicle_;
   Shocks shocks_;
   ButterworthLowPass<kSignals> anti_alias_;
   Sensors sensors_;
@@ -81,8 +92,8 @@ class Simulation {
   std::int64_t settle_steps_{0};
   std::int64_t look_ahead_{0};  // steps, for channels that are early
   bool has_skew_{false};
-  double position_m_{0.0};
-  Excitation now_{};
+  double position_m_{0.0};  // of the first wheelset of all
+  Excitations now_{};
   std::int64_t tick_{0};
 };
 

@@ -5,30 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim_hw/truck_step.hpp"
+
 namespace dampline::sim {
 namespace {
 
 enum : std::size_t { kY, kV, kPitch, kPitchRate, kBend, kBendRate, kZeta1, kZeta2 };
-
-/// tanh; beyond 19 it is 1 in double precision.
-double smooth_sign(double x) noexcept {
-  return std::abs(x) > 19.0 ? std::copysign(1.0, x) : std::tanh(x);
-}
-
-Excitation between(const Excitation& a, const Excitation& m, const Excitation& b,
-                   double u) noexcept {
-  // the parabola through start, middle and end
-  const double wa = (1.0 - u) * (1.0 - 2.0 * u);
-  const double wm = 4.0 * u * (1.0 - u);
-  const double wb = u * (2.0 * u - 1.0);
-  Excitation e;
-  for (std::size_t i = 0; i < 2; ++i) {
-    e.wheelset_mps2[i] =
-        wa * a.wheelset_mps2[i] + wm * m.wheelset_mps2[i] + wb * b.wheelset_mps2[i];
-  }
-  e.force_n = wa * a.force_n + wm * m.force_n + wb * b.force_n;
-  return e;
-}
 
 }  // namespace
 
