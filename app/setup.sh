@@ -22,6 +22,7 @@ readonly test_packages="
 libgtest-dev         the tests' framework
 libgmock-dev         its matchers
 libbenchmark-dev     the programs in bench/
+libgmp-dev           exact arithmetic behind the wavelets' coefficients
 binutils             nm, which lists the core's symbols
 valgrind             counts instructions per sample
 systemd              systemd-analyze, which rates the service's sandbox

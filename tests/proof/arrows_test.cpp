@@ -23,6 +23,8 @@ TEST(Arrows, AreReportedWhereTheyPointTheWrongWay) {
   const std::vector<SourceFile> files{
       {"firmware_core/dampline/a.hpp", "#include <Eigen/Core>\n#include <vector>\n"},
       {"firmware_core/dampline/b.cpp", "  #  include \"hal/frame_source.hpp\"\n"},
+      {"firmware_core/dampline/c.hpp", "#include \"generate/exact_connection.hpp\"\n"},
+      {"firmware_core/generate/d.cpp", "#include <vector>\n#include \"app/error.hpp\"\n"},
       {"hal/clock.hpp", "#include \"drivers/csv.hpp\"\n#include <chrono>\n"},
       {"sim_hw/truck.cpp", "#include \"drivers/csv.hpp\"\n#include \"../app/main.hpp\"\n"},
       {"drivers/csv.cpp", "#include \"sim_hw/truck.hpp\"\n#include \"hal/frame_source.hpp\"\n"},
@@ -30,6 +32,8 @@ TEST(Arrows, AreReportedWhereTheyPointTheWrongWay) {
   EXPECT_THAT(wrong_arrows(files),
               ElementsAre("firmware_core/dampline/a.hpp includes vector",
                           "firmware_core/dampline/b.cpp includes hal/frame_source.hpp",
+                          "firmware_core/dampline/c.hpp includes generate/exact_connection.hpp",
+                          "firmware_core/generate/d.cpp includes app/error.hpp",
                           "hal/clock.hpp includes drivers/csv.hpp",
                           "sim_hw/truck.cpp includes drivers/csv.hpp",
                           "sim_hw/truck.cpp includes ../app/main.hpp",

@@ -13,7 +13,7 @@ namespace dampline {
 ///
 /// Columns counts A's columns and b, which is the last. Factors of the same columns merge exactly:
 /// information adds. Nothing is ever subtracted, so nothing can become indefinite.
-template <int Columns>
+template <int Columns, class Scalar = double>
 class Information {
   static_assert(Columns >= 2);
 
@@ -21,22 +21,22 @@ class Information {
   static constexpr int kColumns = Columns;
   static constexpr int kUnknowns = Columns - 1;
   static constexpr std::size_t kSize = static_cast<std::size_t>(Columns) * (Columns + 1) / 2;
-  using Row = Eigen::Matrix<double, Columns, 1>;
-  using Gram = Eigen::Matrix<double, Columns, Columns>;
-  using Vector = Eigen::Matrix<double, Columns - 1, 1>;
+  using Row = Eigen::Matrix<Scalar, Columns, 1>;
+  using Gram = Eigen::Matrix<Scalar, Columns, Columns>;
+  using Vector = Eigen::Matrix<Scalar, Columns - 1, 1>;
 
   /// Adds one equation. Entries of `row` before `first` must be zero. About 3 Columns^2 operations.
   void absorb(Row row, int first = 0) noexcept {
     for (int i = first; i < Columns; ++i) {
-      const double x = row[i];
-      if (x == 0.0) continue;
-      double* r = factor_.data() + offset(i);
-      const double norm = std::sqrt(r[0] * r[0] + x * x);
-      const double c = r[0] / norm;
-      const double s = x / norm;
+      const Scalar x = row[i];
+      if (x == Scalar(0)) continue;
+      Scalar* r = factor_.data() + offset(i);
+      const Scalar norm = std::sqrt(r[0] * r[0] + x * x);
+      const Scalar c = r[0] / norm;
+      const Scalar s = x / norm;
       r[0] = norm;
       for (int j = i + 1; j < Columns; ++j) {
-        const double upper = r[j - i];
+        const Scalar upper = r[j - i];
         r[j - i] = c * upper + s * row[j];
         row[j] = c * row[j] - s * upper;
       }
@@ -51,14 +51,14 @@ class Information {
   }
 
   /// Forgetting: scales the information by factor^2.
-  void scale(double factor) noexcept {
-    for (double& x : factor_) x *= factor;
+  void scale(Scalar factor) noexcept {
+    for (Scalar& x : factor_) x *= factor;
   }
 
-  void clear() noexcept { factor_.fill(0.0); }
+  void clear() noexcept { factor_.fill(Scalar(0)); }
 
-  [[nodiscard]] double at(int i, int j) const noexcept {
-    return j < i ? 0.0 : factor_[offset(i) + static_cast<std::size_t>(j - i)];
+  [[nodiscard]] Scalar at(int i, int j) const noexcept {
+    return j < i ? Scalar(0) : factor_[offset(i) + static_cast<std::size_t>(j - i)];
   }
 
   [[nodiscard]] Row row(int i) const noexcept {
@@ -79,9 +79,9 @@ class Information {
 
   /// Adds to `out` the information about other columns [A b] * map, weighted.
   template <int Other>
-  void add_mapped(const Eigen::Matrix<double, Columns, Other>& map, double weight,
-                  Information<Other>& out) const noexcept {
-    const double root = std::sqrt(weight);
+  void add_mapped(const Eigen::Matrix<Scalar, Columns, Other>& map, Scalar weight,
+                  Information<Other, Scalar>& out) const noexcept {
+    const Scalar root = std::sqrt(weight);
     for (int i = 0; i < Columns; ++i) {
       out.absorb(root * map.transpose().lazyProduct(row(i)));
     }
@@ -89,10 +89,10 @@ class Information {
 
   /// Least-squares solution by back substitution. False when a pivot is below `tolerance` times its
   /// column's norm: the data do not determine this unknown.
-  [[nodiscard]] bool solve(Vector& theta, double tolerance = 1e-9) const noexcept {
+  [[nodiscard]] bool solve(Vector& theta, Scalar tolerance = Scalar(1e-9)) const noexcept {
     for (int i = kUnknowns - 1; i >= 0; --i) {
       if (!(std::abs(at(i, i)) > tolerance * column_norm(i))) return false;
-      double sum = at(i, kUnknowns);
+      Scalar sum = at(i, kUnknowns);
       for (int j = i + 1; j < kUnknowns; ++j) sum -= at(i, j) * theta[j];
       theta[i] = sum / at(i, i);
     }
@@ -100,13 +100,13 @@ class Information {
   }
 
   /// (A'A)^-1, from the inverse of the triangular factor. Only after solve() succeeded.
-  [[nodiscard]] Eigen::Matrix<double, kUnknowns, kUnknowns> inverse() const noexcept {
-    Eigen::Matrix<double, kUnknowns, kUnknowns> r =
-        Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
+  [[nodiscard]] Eigen::Matrix<Scalar, kUnknowns, kUnknowns> inverse() const noexcept {
+    Eigen::Matrix<Scalar, kUnknowns, kUnknowns> r =
+        Eigen::Matrix<Scalar, kUnknowns, kUnknowns>::Zero();
     for (int j = 0; j < kUnknowns; ++j) {
-      r(j, j) = 1.0 / at(j, j);
+      r(j, j) = Scalar(1) / at(j, j);
       for (int i = j - 1; i >= 0; --i) {
-        double sum = 0.0;
+        Scalar sum = 0;
         for (int k = i + 1; k <= j; ++k) sum -= at(i, k) * r(k, j);
         r(i, j) = sum / at(i, i);
       }
@@ -115,24 +115,24 @@ class Information {
   }
 
   /// Norm of what the solution leaves: |A theta - b|.
-  [[nodiscard]] double residual_norm() const noexcept { return std::abs(at(kUnknowns, kUnknowns)); }
+  [[nodiscard]] Scalar residual_norm() const noexcept { return std::abs(at(kUnknowns, kUnknowns)); }
 
   /// Norm of column j of [A b].
-  [[nodiscard]] double column_norm(int j) const noexcept {
-    double sum = 0.0;
+  [[nodiscard]] Scalar column_norm(int j) const noexcept {
+    Scalar sum = 0;
     for (int i = 0; i <= j; ++i) sum += at(i, j) * at(i, j);
     return std::sqrt(sum);
   }
 
   /// The packed upper triangle, row after row: the exchange form.
-  [[nodiscard]] const std::array<double, kSize>& packed() const noexcept { return factor_; }
-  [[nodiscard]] std::array<double, kSize>& packed() noexcept { return factor_; }
+  [[nodiscard]] const std::array<Scalar, kSize>& packed() const noexcept { return factor_; }
+  [[nodiscard]] std::array<Scalar, kSize>& packed() noexcept { return factor_; }
 
  private:
   static constexpr std::size_t offset(int i) noexcept {
     return static_cast<std::size_t>(i * Columns - i * (i - 1) / 2);
   }
-  std::array<double, kSize> factor_{};
+  std::array<Scalar, kSize> factor_{};
 };
 
 }  // namespace dampline
