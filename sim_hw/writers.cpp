@@ -24,6 +24,15 @@ std::string truth_header(const SimulationConfig& config) {
                  3.6 * config.speed.speed_mps, track.amplitude_m_rad, track.short_wave_mps2);
   fmt::format_to(out, "# noise_mps2 = {}\n# anti_alias_delay_s = {}\n", config.sensors.noise_mps2,
                  anti_alias_delay_s(config.sensors));
+  if (config.vehicle) {
+    const VehicleConfig& v = *config.vehicle;
+    fmt::format_to(out,
+                   "# vehicle = {}\n# frame_mass_kg = {}\n# gyration_radius_m = {}\n"
+                   "# half_pivot_distance_m = {}\n# frame_pitch_inertia_kgm2 = {}\n",
+                   v.instrumented == TruckPosition::kLeading ? "leading" : "trailing",
+                   v.frame_mass_kg, v.gyration_radius_m, v.half_pivot_distance_m,
+                   t.modes.pitch_inertia_kgm2);
+  }
   fmt::format_to(out,
                  "# Columns without the suffix _instant went through the sensors' anti-alias "
                  "filter and have its delay.\n");

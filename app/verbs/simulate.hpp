@@ -24,6 +24,7 @@ struct SimulateOptions {
   std::string track{"low"};  ///< ORE B176, or "high"
   double short_wave_mps2{2.0};
   double friction_scale{1.0};
+  std::string vehicle;               ///< "leading" or "trailing" truck of a whole car; empty: alone
   std::vector<double> standstill_s;  ///< start and end of each
   std::vector<double> speed_change;  ///< seconds and km/h, or nothing
   double noise_mps2{0.02};

@@ -42,6 +42,9 @@ void add_car_flags(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
   verb.add_option("--friction-scale", options.friction_scale, "factor of the friction")
       ->capture_default_str();
+  verb.add_option("--vehicle", options.vehicle,
+                  "leading or trailing: this truck of a whole car (body and two trucks, four "
+                  "degrees of freedom); without it a truck alone");
   verb.add_option("--standstill", options.standstill_s, "START,END in seconds (repeatable)")
       ->delimiter(',')
       ->expected(2, 2 * static_cast<int>(sim::kMostStandstills))

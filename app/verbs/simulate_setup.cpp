@@ -77,6 +77,21 @@ void set_speed(const SimulateOptions& options, sim::SpeedConfig& speed) {
   }
 }
 
+void set_vehicle(const SimulateOptions& options, sim::SimulationConfig& config) {
+  if (options.vehicle.empty()) return;
+  const bool leading = choose("--vehicle", options.vehicle, "leading", "trailing");
+  config.vehicle.emplace().instrumented =
+      leading ? sim::TruckPosition::kLeading : sim::TruckPosition::kTrailing;
+  config.truck.modes.pitch_inertia_kgm2 = sim::kFramePitchInertiaKgm2;
+}
+
+void check_vehicle(const sim::SimulationConfig& config) {
+  if (!config.vehicle || sim::Vehicle::supports(config.truck)) return;
+  throw UsageError(
+      "--vehicle: an effect with a memory of its own (pre-sliding, backlash, a flexible body, a "
+      "drift), expected one that the whole car knows, or a truck alone");
+}
+
 }  // namespace
 
 SimulatedRun make_simulated_run(const SimulateOptions& options) {
@@ -94,9 +109,11 @@ SimulatedRun make_simulated_run(const SimulateOptions& options) {
   config.sensors.bias_mps2 = options.bias_mps2;
   config.sensors.drift_mps2 = options.drift_mps2;
   set_speed(options, config.speed);
+  set_vehicle(options, config);
   for (const std::string& effect : options.effects) {
     require(sim::add_effect_text(config, effect), "--effect");
   }
+  check_vehicle(config);
   for (const std::string& fault : options.faults) {
     require(sim::add_fault_text(config, run.transport, fault), "--fault");
   }

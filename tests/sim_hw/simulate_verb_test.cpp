@@ -162,5 +162,31 @@ TEST_F(SimulateVerb, ReportsAFullDiskAndAMissingFolder) {
   EXPECT_THROW(static_cast<void>(simulate(o)), RunError);
 }
 
+TEST_F(SimulateVerb, SimulatesEitherTruckOfAWholeCar) {
+  SimulateOptions o = options("a.csv");
+  o.truth = (folder_ / "truth.csv").string();
+  std::vector<std::string> records;
+  for (const std::string vehicle : {"", "leading", "trailing"}) {
+    o.vehicle = vehicle;
+    ASSERT_EQ(simulate(o), 0);
+    records.push_back(content(o.out));
+    EXPECT_EQ(content(o.truth).find("# vehicle = ") != std::string::npos, !vehicle.empty());
+  }
+  EXPECT_THAT(content(o.truth), HasSubstr("# vehicle = trailing\n# frame_mass_kg = 2200\n"));
+  EXPECT_NE(records[0], records[1]);
+  EXPECT_NE(records[1], records[2]);
+}
+
+TEST_F(SimulateVerb, KnowsWhatAWholeCarCannotHave) {
+  SimulateOptions o = options("a.csv");
+  o.vehicle = "middle";
+  EXPECT_THAT(usage_error(o), HasSubstr("--vehicle: 'middle', expected leading or trailing"));
+  o.vehicle = "leading";
+  o.effects = {"viscous"};
+  EXPECT_EQ(usage_error(o), "no error");
+  o.effects = {"presliding_hysteresis"};
+  EXPECT_THAT(usage_error(o), HasSubstr("--vehicle: an effect with a memory"));
+}
+
 }  // namespace
 }  // namespace dampline::app
