@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/damping/curve_nodes.hpp"
 #include "dampline/damping/law_columns.hpp"
 #include "dampline/estimate/block_ledger.hpp"
 #include "dampline/estimate/block_store.hpp"
@@ -21,11 +22,6 @@
 #include "dampline/wavelet/row_builder.hpp"
 
 namespace dampline {
-
-/// Right ends of the curve's segments in m/s; the last segment goes on without end. Fixed in
-/// advance, so that statistics of different runs have the same basis and merge.
-inline constexpr std::array<double, kCurveSegments> kDefaultCurveNodesMps{
-    3.0e-3, 5.5e-3, 8.0e-3, 11.0e-3, 14.5e-3, 19.0e-3, 26.0e-3, 40.0e-3};
 
 struct IdentifierConfig {
   double sample_rate_hz{300.0};    ///< 150...400

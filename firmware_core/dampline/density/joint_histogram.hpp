@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/density/bin_axis.hpp"
+#include "dampline/density/growing_weight.hpp"
+#include "dampline/result.hpp"
+
+namespace dampline {
+
+struct JointHistogramConfig {
+  BinRange x{};
+  BinRange y{};
+  double memory_samples{0.0};  ///< time constant of forgetting; 0: none
+};
+
+/// Online joint density of two scalars; as Histogram, whose remarks on outside mass, forgetting,
+/// learned ranges and merging hold here too.
+template <std::size_t XBins, std::size_t YBins>
+class JointHistogram {
+ public:
+  using XAxis = BinAxis<XBins>;
+  using YAxis = BinAxis<YBins>;
+
+  /// kInvalidConfig when a setting is out of its range.
+  [[nodiscard]] static Result<JointHistogramConfig> check(
+      const JointHistogramConfig& config) noexcept {
+    const bool valid = XAxis::valid(config.x) && YAxis::valid(config.y) &&
+                       config.memory_samples >= 0.0 && std::isfinite(config.memory_samples);
+    if (!valid) return Errc::kInvalidConfig;
+    return config;
+  }
+
+  /// Precondition: check(config).ok().
+  explicit JointHistogram(const JointHistogramConfig& config) noexcept
+      : x_{config.x}, y_{config.y}, weight_{config.memory_samples} {}
+
+  void update(double x, double y) noexcept {
+    if (!std::isfinite(x) || !std::isfinite(y)) {
+      ++not_finite_;
+      return;
+    }
+    for (int folds = x_.learn(x); folds > 0; --folds) fold_x();
+    for (int folds = y_.learn(y); folds > 0; --folds) fold_y();
+    const double factor = weight_.step();
+    if (factor != 1.0) scale(factor);
+    const double w = weight_.value();
+    const int i = x_.locate(x);
+    const int j = y_.locate(y);
+    ++samples_;
+    total_ += w;
+    if (i < 0 || i == XAxis::kAbove || j < 0 || j == YAxis::kAbove) {
+      outside_ += w;
+    } else {
+      masses_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] += w;
+    }
+  }
+
+  /// Adds another histogram's samples. kMismatch when bins or memories differ.
+  Result<std::uint64_t> merge(const JointHistogram& other) noexcept {
+    if (!x_.same_bins(other.x_) || !y_.same_bins(other.y_) ||
+        weight_.growth() != other.weight_.growth()) {
+      return Errc::kMismatch;
+    }
+    const double factor = weight_.value() / other.weight_.value();
+    for (std::size_t i = 0; i < XBins; ++i) {
+      for (std::size_t j = 0; j < YBins; ++j) masses_[i][j] += factor * other.masses_[i][j];
+    }
+    total_ += factor * other.total_;
+    outside_ += factor * other.outside_;
+    samples_ += other.samples_;
+    not_finite_ += other.not_finite_;
+    return samples_;
+  }
+
+  [[nodiscard]] const XAxis& x_axis() const noexcept { return x_; }
+  [[nodiscard]] const YAxis& y_axis() const noexcept { return y_; }
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+  [[nodiscard]] std::uint64_t not_finite() const noexcept { return not_finite_; }
+
+  /// Share of the mass in a cell and outside all cells: together 1 (0 without samples).
+  [[nodiscard]] double share(std::size_t i, std::size_t j) const noexcept {
+    return total_ > 0.0 ? masses_[i][j] / total_ : 0.0;
+  }
+  [[nodiscard]] double share_outside() const noexcept {
+    return total_ > 0.0 ? outside_ / total_ : 0.0;
+  }
+  /// Probability per unit of x and of y. Its integral and share_outside() make 1.
+  [[nodiscard]] double density(std::size_t i, std::size_t j) const noexcept {
+    return share(i, j) / (x_.width() * y_.width());
+  }
+
+ private:
+  using Masses = std::array<std::array<double, YBins>, XBins>;
+  void fold_x() noexcept {
+    Masses wide{};
+    for (std::size_t i = 0; i < XBins; ++i) {
+      for (std::size_t j = 0; j < YBins; ++j) wide[XAxis::folded(i)][j] += masses_[i][j];
+    }
+    masses_ = wide;
+  }
+  void fold_y() noexcept {
+    Masses wide{};
+    for (std::size_t i = 0; i < XBins; ++i) {
+      for (std::size_t j = 0; j < YBins; ++j) wide[i][YAxis::folded(j)] += masses_[i][j];
+    }
+    masses_ = wide;
+  }
+  void scale(double factor) noexcept {
+    for (auto& row : masses_) {
+      for (double& mass : row) mass *= factor;
+    }
+    total_ *= factor;
+    outside_ *= factor;
+  }
+
+  XAxis x_;
+  YAxis y_;
+  GrowingWeight weight_;
+  Masses masses_{};
+  double total_{0.0};
+  double outside_{0.0};
+  std::uint64_t samples_{0};
+  std::uint64_t not_finite_{0};
+};
+
+}  // namespace dampline

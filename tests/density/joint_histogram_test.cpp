@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/density/joint_histogram.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "dampline/density/dependence.hpp"
+#include "sim_hw/random.hpp"
+
+namespace dampline {
+namespace {
+
+using Joint = JointHistogram<16, 32>;
+
+JointHistogramConfig given(double memory = 0.0) {
+  return {
+      .x = {.low = -2.0, .high = 2.0}, .y = {.low = -4.0, .high = 4.0}, .memory_samples = memory};
+}
+
+/// Correlated normal numbers.
+void fill(Joint& joint, double correlation, int count, std::uint64_t seed) {
+  sim::Random random{seed, sim::Stream::kTrack};
+  for (int i = 0; i < count; ++i) {
+    const double x = random.normal();
+    joint.update(x, correlation * x + std::sqrt(1.0 - correlation * correlation) * random.normal());
+  }
+}
+
+double integral(const Joint& joint) {
+  double sum = joint.share_outside();
+  for (std::size_t i = 0; i < 16; ++i) {
+    for (std::size_t j = 0; j < 32; ++j) {
+      sum += joint.density(i, j) * joint.x_axis().width() * joint.y_axis().width();
+    }
+  }
+  return sum;
+}
+
+TEST(JointHistogram, ChecksItsConfiguration) {
+  EXPECT_TRUE(Joint::check(given()).ok());
+  auto wrong = given();
+  wrong.y.low = 5.0;
+  EXPECT_FALSE(Joint::check(wrong).ok());
+  EXPECT_FALSE(Joint::check(given(-1.0)).ok());
+}
+
+TEST(JointHistogram, IntegratesToOneWithTheMassOutside) {
+  for (const double memory : {0.0, 900.0}) {
+    Joint joint{given(memory)};
+    fill(joint, 0.5, 100'000, 1);
+    joint.update(std::numeric_limits<double>::quiet_NaN(), 0.0);
+    EXPECT_GT(joint.share_outside(), 0.03);
+    EXPECT_EQ(joint.not_finite(), 1U);
+    EXPECT_NEAR(integral(joint), 1.0, 1e-12);
+  }
+}
+
+TEST(JointHistogram, TwoHalvesMergeToTheWholeExactly) {
+  Joint whole{given()};
+  Joint first{given()};
+  Joint second{given()};
+  sim::Random random{7, sim::Stream::kTrack};
+  for (int i = 0; i < 30'000; ++i) {
+    const double x = random.normal();
+    const double y = random.normal();
+    whole.update(x, y);
+    (i % 3 == 0 ? first : second).update(x, y);
+  }
+  ASSERT_TRUE(first.merge(second).ok());
+  EXPECT_EQ(first.share_outside(), whole.share_outside());
+  for (std::size_t i = 0; i < 16; ++i) {
+    for (std::size_t j = 0; j < 32; ++j) EXPECT_EQ(first.share(i, j), whole.share(i, j));
+  }
+  auto other = given();
+  other.x.high = 3.0;
+  const auto refused = first.merge(Joint{other});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error(), Errc::kMismatch);
+}
+
+TEST(JointHistogram, LearnsBothRanges) {
+  Joint learner{{.x = {.resolution = 1e-5, .warm_up_samples = 2'000},
+                 .y = {.resolution = 1e-3, .warm_up_samples = 2'000}}};
+  fill(learner, 0.3, 6'000, 9);
+  Joint known{{.x = {.low = learner.x_axis().low(), .high = learner.x_axis().high()},
+               .y = {.low = learner.y_axis().low(), .high = learner.y_axis().high()}}};
+  fill(known, 0.3, 6'000, 9);
+  EXPECT_GT(learner.x_axis().high(), 3.0);
+  for (std::size_t i = 0; i < 16; ++i) {
+    for (std::size_t j = 0; j < 32; ++j) EXPECT_EQ(learner.share(i, j), known.share(i, j));
+  }
+}
+
+// Of independent numbers nothing is left above chance; of a bivariate normal distribution the mean
+// square contingency is r^2 / (1 - r^2) (Pearson 1904), less what the range and the bins cut off.
+TEST(Dependence, IsThatOfCorrelatedNumbers) {
+  Joint independent{given()};
+  fill(independent, 0.0, 40'000, 11);
+  const Dependence none = dependence(independent, 40'000.0);
+  ASSERT_TRUE(none.known);
+  EXPECT_LT(none.size, 0.04);
+  Joint dependent{{.x = {.low = -4.0, .high = 4.0}, .y = {.low = -4.0, .high = 4.0}}};
+  fill(dependent, 0.4, 400'000, 12);
+  const Dependence some = dependence(dependent, 400'000.0);
+  ASSERT_TRUE(some.known);
+  EXPECT_NEAR(some.size, 0.4 / std::sqrt(1.0 - 0.16), 0.04);
+}
+
+TEST(Dependence, IsUnknownOfFewSamples) {
+  Joint joint{given()};
+  fill(joint, 0.0, 40, 13);
+  EXPECT_FALSE(dependence(joint, 40.0).known);
+}
+
+}  // namespace
+}  // namespace dampline
