@@ -24,7 +24,7 @@ namespace dampline {
 struct FokkerPlanckConfig {
   double sample_rate_hz{300.0};  ///< 150...400
   std::array<double, kCurveSegments> curve_nodes_mps{kDefaultCurveNodesMps};
-  BinRange velocity_mps{.resolution = 6.25e-5, .warm_up_samples = 6000};
+  BinRange velocity_mps{.resolution = 3.125e-5, .warm_up_samples = 6000};
   BinRange deflection_m{.resolution = 2.0e-6, .warm_up_samples = 6000};
   double memory_s{0.0};                ///< time constant of forgetting; 0: none
   double anti_alias_corner_hz{100.0};  ///< of the accelerations; 0: none

@@ -42,7 +42,7 @@ void FokkerPlanckSolver::place_paper_points(MethodResult& result) const noexcept
   for (std::size_t b = 0; b < kVelocityBins; ++b) {
     const double v = velocities.axis().centre(b);
     const auto node =
-        std::min(static_cast<std::size_t>(std::abs(v) / length + 0.5), kPaperSegments);
+        std::min(static_cast<std::size_t>(std::lround(std::abs(v) / length)), kPaperSegments);
     CurvePoint& point = result.curve[v > 0.0 ? kPaperSegments + 1 + node : kPaperSegments - node];
     point.samples += static_cast<std::uint64_t>(velocities.mass(b));
   }

@@ -153,14 +153,15 @@ class SideFit {
       alpha += segment.slope_ps * side_.length_mps;
       segment.alpha_mps2 = alpha;
     }
-    double mass = 0.0;
+    double weight = 0.0;
     for (std::size_t b = 0; b < kVelocityBins; ++b) {
       const double v = speed(b);
       if (v <= side_.excluded_mps) continue;
-      mass += density_.p[b];
-      out.mean_mps2[s_] += density_.p[b] * alpha_at(out, s_, v);
+      const double squared = density_.p[b] * density_.p[b];
+      weight += squared;
+      out.mean_mps2[s_] += squared * alpha_at(out, s_, v);
     }
-    if (mass > 0.0) out.mean_mps2[s_] /= mass;
+    if (weight > 0.0) out.mean_mps2[s_] /= weight;
   }
 
   const SmoothDensity& density_;
@@ -215,10 +216,11 @@ PaperForm fit_paper_form(const VelocityHistogram& velocities,
   const double reach =
       config.reach_mps > 0.0 ? config.reach_mps : speed_quantile(velocities, kReachShare);
   const double length = reach / static_cast<double>(kPaperSegments);
-  // A segment that begins in the excluded region is seen only from its end on: as an offset.
+  // Whole segments are left out: what is left of one that is cut would be free to follow 1 / p2,
+  // which (alpha p2)' does not see.
   const auto first = static_cast<int>(std::ceil(config.excluded_mps / length - 1e-9));
   if (first >= kUnknowns - 1) return out;
-  const Side side{.length_mps = length, .excluded_mps = config.excluded_mps, .first = first};
+  const Side side{.length_mps = length, .excluded_mps = first * length, .first = first};
   const double level = config.input_level;
   const Ratios ratios{.psi2 = level * deflections.psi2_p1_p1 / deflections.p1_p1,
                       .psi4 = level * level * deflections.psi4_p1_p1 / deflections.p1_p1,

@@ -13,7 +13,7 @@ namespace dampline {
 ///   -v p1' p2 + beta y p1 p2' + (alpha p2)' p1 + psi(y)^2 p1 p2'' / 2 = 0
 /// met in the least squares sense. It factors into integrals over y and over v.
 inline constexpr std::size_t kPaperSegments = 20;
-inline constexpr std::size_t kVelocityBins = 256;
+inline constexpr std::size_t kVelocityBins = 512;
 inline constexpr std::size_t kDeflectionBins = 128;
 inline constexpr std::size_t kSampleGroups = 16;
 using VelocityHistogram = Histogram<kVelocityBins, kSampleGroups>;
@@ -24,7 +24,7 @@ struct PaperFormConfig {
   double input_level{0.0};  ///< mean of psi^2, two-sided, (m/s^2)^2 / Hz
   Modulation::Polynomial modulation{1.0};
   double bandwidth_mps{0.0};  ///< of the Gaussian kernel that smooths p2; at least one bin
-  double excluded_mps{0.0};   ///< |v| below this is left out of the integrals; 0: the paper
+  double excluded_mps{0.0};   ///< |v| below this, in whole segments, is left out; 0: the paper
   double reach_mps{0.0};      ///< end of segment 20; 0: where 99 % of the mass lies
   std::size_t left_out_group{kSampleGroups};  ///< of the samples; kSampleGroups: none
 };
@@ -55,7 +55,8 @@ struct PaperForm {
   /// [0]: v < 0, from zero outwards; [1]: v > 0.
   std::array<std::array<PaperSegment, kPaperSegments>, 2> segments{};
   std::array<double, 2> offset_mps2{};  ///< alpha beside zero
-  std::array<double, 2> mean_mps2{};    ///< alpha over the samples that are not excluded
+  /// Mean of alpha over what is not excluded, weighted by p2^2 as the equations are.
+  std::array<double, 2> mean_mps2{};
   PaperIntegrals integrals{};
   double level_mps2() const noexcept { return 0.5 * (mean_mps2[1] - mean_mps2[0]); }
   double offset() const noexcept { return 0.5 * (mean_mps2[1] + mean_mps2[0]); }
