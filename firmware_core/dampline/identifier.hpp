@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 
@@ -143,7 +142,7 @@ class Identifier {
   Counts counts_;
   std::array<double, kHistory> velocity_mps_{};  // rings, by sample of the stretch
   std::array<double, kHistory> accel_mps2_{};    // y'' with its fast part lifted
-  std::bitset<kHistory> still_{};
+  std::array<bool, kHistory> still_{};
 };
 
 }  // namespace dampline
