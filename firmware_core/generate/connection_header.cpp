@@ -5,23 +5,12 @@
 #include <sstream>
 #include <vector>
 
+#include "generate/decimal.hpp"
 #include "generate/exact_connection.hpp"
 #include "generate/low_pass.hpp"
 
 namespace dampline::generate {
 namespace {
-
-/// Correct to 25 digits, so that the compiler rounds it as it would round the exact number.
-std::string decimal(const mpf_class& x) {
-  mp_exp_t exponent = 0;
-  std::string digits = x.get_str(exponent, 10, 25);
-  if (digits.empty()) return "0.0";
-  const std::size_t first = digits[0] == '-' ? 1 : 0;
-  digits.resize(first + 25, '0');
-  std::ostringstream out;
-  out << digits.substr(0, first + 1) << '.' << digits.substr(first + 1) << 'e' << exponent - 1;
-  return out.str();
-}
 
 void print_array(std::ostream& out, const std::string& name, const std::string& comment,
                  const std::vector<mpf_class>& values) {

@@ -7,6 +7,7 @@
 #include "dampline/estimate/sequential_windows.hpp"
 #include "dampline/wavelet/coarse_rows.hpp"
 #include "dampline/wavelet/motion_rows.hpp"
+#include "dampline/wavelet/product_rows.hpp"
 
 namespace dampline {
 namespace {
@@ -20,6 +21,7 @@ template class MotionRows<D16, ChainModel<Smooth, Dry>>;
 template class MotionRows<D12, GroundedFrictionModel<>>;
 template class CoarseRows<D12, SingleModel<Smooth>, 2>;
 template class CoarseRows<D8, ChainModel<Dry, Dry>, 1>;
+template class ProductRows<SingleModel<Smooth>, 3>;
 template class SequentialWindows<7>;
 template class RecursiveEstimate<7>;
 template class RecursiveEstimate<7, float>;
