@@ -2,6 +2,7 @@
 #include "sim_hw/phase/section_sweep.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dampline/phase/harmonic_meter.hpp"
@@ -11,6 +12,7 @@ namespace dampline::sim {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kUnbounded = 1e6;  // a deflection that grows beyond it grows for ever
 
 void add_noise(std::vector<StrobedPoint>& points, double share, std::uint64_t seed) {
   Random random{seed, Stream::kSensors};
@@ -82,7 +84,11 @@ double steady_amplitude(const OscillatorLaw& law, const OscillatorDrive& drive, 
                         int measured_periods, int steps_per_period) {
   const double step_s = kTurn / drive.rate_rad_s / steps_per_period;
   FrictionOscillator oscillator{law, drive, step_s};
-  for (int i = 0; i < settle_periods * steps_per_period; ++i) oscillator.step();
+  for (int i = 0; i < settle_periods * steps_per_period; ++i) {
+    oscillator.step();
+    if (!(std::abs(oscillator.point().deflection_m) < kUnbounded))
+      return std::numeric_limits<double>::infinity();
+  }
   HarmonicMeter meter{drive.rate_rad_s};
   const PhasePoint first = oscillator.point();
   bool moved = false;

@@ -41,7 +41,7 @@ struct StrobedPoint {
 [[nodiscard]] std::vector<OscillatorDrive> random_regimes(int count, std::uint64_t seed);
 
 /// Steady amplitude of the deflection at the drive's rate, after `settle_periods`; 0 where it
-/// sticks.
+/// sticks, infinite where it grows without bound.
 [[nodiscard]] double steady_amplitude(const OscillatorLaw& law, const OscillatorDrive& drive,
                                       int settle_periods, int measured_periods,
                                       int steps_per_period);
