@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/verify/phase.hpp"
 #include "app/verify/subject.hpp"
 
 namespace dampline::app {
@@ -16,7 +17,9 @@ namespace {
 
 /// Every subject has one line here.
 const std::vector<VerifySubject>& subjects() {
-  static const std::vector<VerifySubject> all{};
+  static const std::vector<VerifySubject> all{
+      {"phase", "resonances, sections and friction of the phase mappings", &verify_phase},
+  };
   return all;
 }
 

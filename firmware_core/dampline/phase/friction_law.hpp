@@ -39,19 +39,20 @@ class FrictionLawFit {
   using Map = FrictionMap<Nodes, Viscous>;
 
   [[nodiscard]] static FrictionLaw fit(const Map& map) noexcept {
-    if (map.points() < kLeastPoints || 4 * map.outside() > map.points()) return {};
-    const Trial straight = solve(map, kNoKink);
+    if (map.points() < Map::kLeastPoints || map.clipped()) return {};
+    const typename Map::Weighted weighted = map.weigh();
+    if (!(weighted.residual_mps2 > 0.0)) return {};
+    const Trial straight = solve(map, weighted, kNoKink);
     Trial best;
     for (int cell = 0; cell + 1 < Nodes; ++cell) {
-      const Trial trial = solve(map, cell);
+      const Trial trial = solve(map, weighted, cell);
       if (trial.solved && kink_is_in(map, trial, cell) &&
           (!best.solved || trial.squares < best.squares))
         best = trial;
     }
     if (!best.solved) return straight.law;
     if (!straight.solved) return best.law;
-    const double variance = best.law.residual_mps2 * best.law.residual_mps2;
-    const bool worth_it = straight.squares - best.squares > kWorthAKink * variance;
+    const bool worth_it = straight.squares - best.squares > kWorthAKink * best.variance;
     return worth_it ? best.law : straight.law;
   }
 
@@ -61,7 +62,6 @@ class FrictionLawFit {
   static constexpr int kFree = kH + 2;
   static constexpr int kColumns = kFree + 3;
   static constexpr int kNoKink = -1;
-  static constexpr std::uint64_t kLeastPoints = 50;
   /// Squares, in variances, that a kink must take away: 40 for the three unknowns it brings.
   static constexpr double kWorthAKink = 40.0;
   static constexpr double kConstantSigmas = 3.0;
@@ -70,7 +70,8 @@ class FrictionLawFit {
 
   struct Trial {
     bool solved{false};
-    double squares{0.0};
+    double squares{0.0};   ///< of the equations of unit variance
+    double variance{1.0};  ///< squares per degree of freedom
     double kink_m{0.0};
     FrictionLaw law{};
   };
@@ -94,9 +95,10 @@ class FrictionLawFit {
     return m;
   }
 
-  static Trial solve(const Map& map, int kink_cell) noexcept {
+  static Trial solve(const Map& map, const typename Map::Weighted& weighted,
+                     int kink_cell) noexcept {
     Factor factor;
-    map.factor().add_mapped(mapping(map, kink_cell), 1.0, factor);
+    weighted.factor.add_mapped(mapping(map, kink_cell), 1.0, factor);
     for (int i = 0; i < 2; ++i) {  // so light that it decides only where there are no points
       typename Factor::Row pin = Factor::Row::Zero();
       pin[kFree + i] = 1e-3;
@@ -108,7 +110,9 @@ class FrictionLawFit {
     out.solved = true;
     out.squares = factor.residual_norm() * factor.residual_norm();
     out.kink_m = -theta[kH] / theta[kH + 1];
-    out.law = law(factor, theta, out.squares, static_cast<double>(map.points()));
+    out.variance = out.squares / std::max(static_cast<double>(map.points()) - kColumns, 1.0);
+    out.law = law(factor, theta, out.variance);
+    out.law.residual_mps2 = weighted.residual_mps2 * std::sqrt(out.variance);
     return out;
   }
 
@@ -119,15 +123,13 @@ class FrictionLawFit {
            trial.kink_m > map.node_m(cell) - slack && trial.kink_m < map.node_m(cell + 1) + slack;
   }
 
-  static FrictionLaw law(const Factor& factor, const typename Factor::Vector& theta, double squares,
-                         double points) noexcept {
+  static FrictionLaw law(const Factor& factor, const typename Factor::Vector& theta,
+                         double variance) noexcept {
     FrictionLaw out;
     const auto covariance = factor.inverse();
-    const double variance = squares / std::max(points - kColumns, 1.0);
     const auto estimate = [&](int i) {
       return Estimate{theta[i], std::sqrt(variance * covariance(i, i))};
     };
-    out.residual_mps2 = std::sqrt(variance);
     out.restoring_mps2 = estimate(0);
     out.stiffness_per_s2 = estimate(1);
     if constexpr (Viscous) out.viscous_per_s = estimate(2);

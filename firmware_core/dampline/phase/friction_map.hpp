@@ -48,8 +48,9 @@ struct FrictionCurve {
 /// spaced nodes, jointly by least squares: at one deflection, the two signs of the velocity tell
 /// the one from the other. Viscous: whether c is among the unknowns.
 ///
-/// Points must move: stuck ones obey an inequality, not this equation. One update is about
-/// 20 Nodes^2 operations.
+/// Points are gathered by cell and velocity sign, each with its own residual variance: noise in the
+/// deflection weighs by r' +- g', so the two branches scatter differently. Points must move: stuck
+/// ones obey an inequality, not this equation.
 template <int Nodes, bool Viscous = false>
 class FrictionMap {
   static_assert(Nodes >= 3);
@@ -92,19 +93,18 @@ class FrictionMap {
 
   [[nodiscard]] FrictionCurve<Nodes> curve() const noexcept {
     FrictionCurve<Nodes> out;
-    if (points_ < 50) return out;
-    if (4 * outside_ > points_) {
+    if (points_ < kLeastPoints) return out;
+    if (clipped()) {
       out.state = FrictionMapState::kClipped;
       return out;
     }
-    const Factor factor = regularised();
+    const Weighted weighted = weigh();
+    if (!(weighted.residual_mps2 > 0.0)) return out;
+    const Factor factor = regularised(weighted.factor, weighted.residual_mps2);
     typename Factor::Vector theta;
     if (!factor.solve(theta)) return out;
     const auto covariance = factor.inverse();
-    const double variance = residual_variance();
-    const auto estimate = [&](int i) {
-      return Estimate{theta[i], std::sqrt(variance * covariance(i, i))};
-    };
+    const auto estimate = [&](int i) { return Estimate{theta[i], std::sqrt(covariance(i, i))}; };
     for (int j = 0; j < Nodes; ++j) {
       FrictionNode& node = out.nodes[static_cast<std::size_t>(j)];
       node = support(j);
@@ -114,7 +114,7 @@ class FrictionMap {
       out.state = FrictionMapState::kReady;
     }
     if constexpr (Viscous) out.viscous_per_s = estimate(2 * Nodes);
-    out.residual_mps2 = std::sqrt(variance);
+    out.residual_mps2 = weighted.residual_mps2;
     return out;
   }
 
@@ -124,50 +124,131 @@ class FrictionMap {
   [[nodiscard]] std::uint64_t outside() const noexcept { return outside_; }
   [[nodiscard]] std::uint64_t not_finite() const noexcept { return not_finite_; }
 
-  /// Columns r_0, g_0, r_1, g_1, ..., c if Viscous, right-hand side: what further models of r and
-  /// g are fitted from. Nodes without points have empty columns.
-  [[nodiscard]] const Factor& factor() const noexcept { return factor_; }
+  [[nodiscard]] bool clipped() const noexcept { return 4 * outside_ > points_; }
+
+  /// Equations of unit variance in the columns r_0, g_0, r_1, g_1, ..., c if Viscous, right-hand
+  /// side: what further models of r and g are fitted from. Nodes without points have empty columns.
+  struct Weighted {
+    Factor factor{};
+    double residual_mps2{0.0};  ///< rms of the unweighted fit; 0: there is none
+  };
+  /// Two fits: the first tells how the parts scatter. Not for the sample path.
+  [[nodiscard]] Weighted weigh() const noexcept {
+    Weighted out;
+    const Factor first = regularised(gather([](const Part&) { return 1.0; }), 1.0);
+    typename Factor::Vector theta;
+    if (!first.solve(theta)) return out;
+    int used = Viscous ? 1 : 0;
+    for (int j = 0; j < Nodes; ++j) used += support(j).resolved ? 2 : 0;
+    const double freedom = std::max(static_cast<double>(points_) - used, 1.0);
+    double squares = 0.0;
+    for (const Part& part : parts_) squares += misfit(part, theta);
+    const double pooled = squares / freedom + kRounding * mean_square();
+    const double lost = static_cast<double>(points_) / freedom;
+    out.residual_mps2 = std::sqrt(pooled);
+    out.factor = gather([&](const Part& part) {
+      const double own = misfit(part, theta) * lost + kPriorPoints * pooled;
+      return std::sqrt((part.points + kPriorPoints) / own);
+    });
+    return out;
+  }
+
+  static constexpr std::uint64_t kLeastPoints = 50;
 
  private:
-  /// Nodes that need both signs need this many points of each.
+  /// Nodes need this many points of each velocity sign.
   static constexpr std::uint32_t kLeastOfEachSign = 10;
-  /// Of the mean information per node; stands in where there is none.
+  /// Weight of second differences, of the mean information per node; stands in where there is none.
   static constexpr double kSmoothness = 1e-3;
+  /// A part's variance counts as many points of the mean variance besides its own.
+  static constexpr double kPriorPoints = 5.0;
+  static constexpr double kRounding = 1e-24;
 
-  struct CellCount {
-    std::uint32_t positive{0};
-    std::uint32_t negative{0};
+  /// Columns: the values r +- g at the two nodes of the cell, v if Viscous, right-hand side.
+  using Local = Information<3 + (Viscous ? 1 : 0)>;
+  struct Part {
+    int cell{0};
+    double sign{1.0};
+    std::uint32_t points{0};
+    Local factor{};
   };
 
   void absorb(int cell, double share, const PhasePoint& p, double input_mps2) noexcept {
-    const double sign = p.velocity_mps > 0.0 ? 1.0 : -1.0;
-    typename Factor::Row row = Factor::Row::Zero();
-    row[2 * cell] = 1.0 - share;
-    row[2 * cell + 1] = sign * (1.0 - share);
-    row[2 * cell + 2] = share;
-    row[2 * cell + 3] = sign * share;
-    if constexpr (Viscous) row[2 * Nodes] = p.velocity_mps;
-    row[kUnknowns] = input_mps2 - p.accel_mps2;
-    factor_.absorb(row, 2 * cell);
-    CellCount& count = cells_[static_cast<std::size_t>(cell)];
-    ++(sign > 0.0 ? count.positive : count.negative);
+    const bool forward = p.velocity_mps > 0.0;
+    Part& part = parts_[static_cast<std::size_t>(2 * cell + (forward ? 1 : 0))];
+    part.cell = cell;
+    part.sign = forward ? 1.0 : -1.0;
+    ++part.points;
+    typename Local::Row row = Local::Row::Zero();
+    row[0] = 1.0 - share;
+    row[1] = share;
+    if constexpr (Viscous) row[2] = p.velocity_mps;
+    row[Local::kUnknowns] = input_mps2 - p.accel_mps2;
+    part.factor.absorb(row);
     ++points_;
+  }
+
+  /// All parts' equations, each part's times its weight.
+  template <class Weight>
+  [[nodiscard]] Factor gather(Weight weight) const noexcept {
+    Factor out;
+    for (const Part& part : parts_) {
+      if (part.points == 0) continue;
+      const double w = weight(part);
+      for (int i = 0; i < Local::kColumns; ++i) {
+        const typename Local::Row local = part.factor.row(i);
+        typename Factor::Row row = Factor::Row::Zero();
+        row[2 * part.cell] = w * local[0];
+        row[2 * part.cell + 1] = w * part.sign * local[0];
+        row[2 * part.cell + 2] = w * local[1];
+        row[2 * part.cell + 3] = w * part.sign * local[1];
+        if constexpr (Viscous) row[2 * Nodes] = w * local[2];
+        row[kUnknowns] = w * local[Local::kUnknowns];
+        out.absorb(row, 2 * part.cell);
+      }
+    }
+    return out;
+  }
+
+  /// Sum of squares that a solution leaves in a part.
+  [[nodiscard]] double misfit(const Part& part,
+                              const typename Factor::Vector& theta) const noexcept {
+    const auto value = [&](int node) { return theta[2 * node] + part.sign * theta[2 * node + 1]; };
+    double squares = 0.0;
+    for (int i = 0; i < Local::kColumns; ++i) {
+      const typename Local::Row local = part.factor.row(i);
+      double left = local[0] * value(part.cell) + local[1] * value(part.cell + 1);
+      if constexpr (Viscous) left += local[2] * theta[2 * Nodes];
+      left -= local[Local::kUnknowns];
+      squares += left * left;
+    }
+    return squares;
+  }
+
+  /// Of the right-hand side.
+  [[nodiscard]] double mean_square() const noexcept {
+    double squares = 0.0;
+    for (const Part& part : parts_) {
+      const double norm = part.factor.column_norm(Local::kUnknowns);
+      squares += norm * norm;
+    }
+    return squares / static_cast<double>(points_);
   }
 
   [[nodiscard]] FrictionNode support(int j) const noexcept {
     FrictionNode node{.deflection_m = node_m(j)};
     for (int cell = std::max(j - 1, 0); cell <= std::min(j, Nodes - 2); ++cell) {
-      node.positive += cells_[static_cast<std::size_t>(cell)].positive;
-      node.negative += cells_[static_cast<std::size_t>(cell)].negative;
+      node.negative += parts_[static_cast<std::size_t>(2 * cell)].points;
+      node.positive += parts_[static_cast<std::size_t>(2 * cell + 1)].points;
     }
     node.resolved = std::min(node.positive, node.negative) >= kLeastOfEachSign;
     return node;
   }
 
   /// Second differences of both lines, so light that they decide only what the points do not.
-  [[nodiscard]] Factor regularised() const noexcept {
-    Factor out = factor_;
-    const double weight = kSmoothness * std::sqrt(static_cast<double>(points_) / Nodes);
+  [[nodiscard]] Factor regularised(Factor out, double residual_mps2) const noexcept {
+    const double weight =
+        kSmoothness * std::sqrt(static_cast<double>(points_) / Nodes) / residual_mps2;
     for (int i = 0; i < 2 * (Nodes - 2); ++i) {
       typename Factor::Row row = Factor::Row::Zero();
       row[i] = weight;
@@ -178,21 +259,13 @@ class FrictionMap {
     return out;
   }
 
-  [[nodiscard]] double residual_variance() const noexcept {
-    int used = Viscous ? 1 : 0;
-    for (int j = 0; j < Nodes; ++j) used += 2 * (support(j).resolved ? 1 : 0);
-    const double left = factor_.residual_norm();
-    return left * left / std::max(static_cast<double>(points_) - used, 1.0);
-  }
-
   FrictionMapConfig config_;
   double per_cell_{0.0};
   std::uint64_t points_{0};
   std::uint64_t slow_{0};
   std::uint64_t outside_{0};
   std::uint64_t not_finite_{0};
-  std::array<CellCount, static_cast<std::size_t>(Nodes - 1)> cells_{};
-  Factor factor_;
+  std::array<Part, 2 * static_cast<std::size_t>(Nodes - 1)> parts_{};
 };
 
 }  // namespace dampline

@@ -93,7 +93,8 @@ Comb follow(const Correlation& c, const Peak& first) noexcept {
   comb.near /= half;
   comb.far /= multiples - half;
   const double left = std::max(sum_pp - sum_mp * comb.period, 0.0) / (multiples - 1);
-  comb.period_std = std::sqrt(left / sum_mm);
+  // Neighbouring peaks err together: only about two of the places are independent.
+  comb.period_std = std::sqrt(left / sum_mm * 0.5 * multiples);
   return comb;
 }
 
