@@ -125,12 +125,11 @@ std::vector<PhaseRow> linearity_rows(int runs) {
 std::vector<PhaseRow> friction_rows(int runs) {
   std::vector<PhaseRow> rows;
   struct Case {
-    double noise;
-    int phases;
-    std::optional<double> most;
+    double noise{0.0};
+    int phases{8};
+    std::optional<double> most{};
   };
-  const double none = 0.0;
-  for (const Case& c : {Case{none, 8, 0.015}, Case{0.01, 8, 0.015}, Case{0.05, 8, 0.035},
+  for (const Case& c : {Case{0.0, 8, 0.015}, Case{0.01, 8, 0.015}, Case{0.05, 8, 0.035},
                         Case{0.01, 2, std::nullopt}}) {
     RunningMean g, r, inside, friction, reversal, stiffness;
     for (int run = 0; run < runs; ++run) {

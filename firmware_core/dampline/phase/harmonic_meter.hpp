@@ -28,7 +28,7 @@ class HarmonicMeter {
     if (count_ < 8 || !factor_.solve(theta, 1e-6)) return {};
     const double size = std::hypot(theta[1], theta[2]);
     const double left = factor_.residual_norm();
-    const double degrees = static_cast<double>(count_ - 3);
+    const auto degrees = static_cast<double>(count_ - 3);
     return {size, std::sqrt(left * left / degrees * 2.0 / static_cast<double>(count_))};
   }
 
