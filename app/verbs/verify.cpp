@@ -11,6 +11,7 @@
 #include "app/error.hpp"
 #include "app/verify/phase.hpp"
 #include "app/verify/subject.hpp"
+#include "app/verify/wavelet.hpp"
 
 namespace dampline::app {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 /// Every subject has one line here.
 const std::vector<VerifySubject>& subjects() {
   static const std::vector<VerifySubject> all{
+      {"wavelet", "wavelet-Galerkin identification (Ghanem and Romeo 2001)", &verify_wavelet},
       {"phase", "resonances, sections and friction of the phase mappings", &verify_phase},
   };
   return all;

@@ -6,10 +6,10 @@
 namespace dampline::app {
 
 struct VerifyOptions {
-  bool json{false};                 ///< the figures as data
-  bool markdown{false};             ///< the figures as Markdown tables
-  bool quiet{false};                ///< nothing on standard output; the exit code tells
-  std::vector<std::string> tables;  ///< only these tables of the publication; empty: all
+  bool json{false};                   ///< the figures as data
+  bool markdown{false};               ///< the figures as Markdown tables
+  bool quiet{false};                  ///< nothing on standard output; the exit code tells
+  std::vector<std::string> tables{};  ///< only these tables of the publication; empty: all
 };
 
 /// One published method whose cases the program recomputes.

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "app/verify/wavelet/figures.hpp"
+
+// One function per published case: simulated, estimated, with its bounds. Spread over several files
+// for the sake of compile time.
+namespace dampline::app {
+
+[[nodiscard]] CaseFigures product_result();
+[[nodiscard]] CaseFigures duffing_result(bool forced);
+[[nodiscard]] CaseFigures van_der_pol_result(bool forced);
+[[nodiscard]] CaseFigures duffing_chain_result(bool forced);
+[[nodiscard]] CaseFigures van_der_pol_chain_result(bool forced);
+[[nodiscard]] CaseFigures coulomb_free_result();
+[[nodiscard]] CaseFigures coulomb_forced_result();
+[[nodiscard]] CaseFigures coulomb_tanh_result();
+/// The same system with the three other smooth representations of sign(v); table "signs".
+[[nodiscard]] CaseFigures coulomb_erf_result();
+[[nodiscard]] CaseFigures coulomb_arctangent_result();
+[[nodiscard]] CaseFigures coulomb_rational_result();
+[[nodiscard]] CaseFigures coulomb_chain_result();
+[[nodiscard]] CaseFigures linear_coulomb_result(double ratio, double slope_npm);
+[[nodiscard]] CaseFigures teflon_result();
+
+}  // namespace dampline::app

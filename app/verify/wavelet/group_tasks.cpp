@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "app/verify/wavelet/properties.hpp"
+#include "app/verify/wavelet/selection.hpp"
+#include "app/verify/wavelet/tasks.hpp"
+
+namespace dampline::app {
+
+const std::vector<GroupTask>& group_tasks() {
+  static const std::vector<GroupTask> all{{{"17"}, single_selection},
+                                          {{"18"}, chain_selection},
+                                          {{"step"}, stiffness_drop},
+                                          {{"precision"}, recursive_against_batch}};
+  return all;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/verify/wavelet/figures.hpp"
+#include "app/verify/wavelet/published_case.hpp"
+#include "app/verify/wavelet/rows.hpp"
+#include "dampline/estimate/recursive_estimate.hpp"
+#include "dampline/estimate/sequential_windows.hpp"
+#include "dampline/wavelet/daubechies.hpp"
+
+namespace dampline::app {
+
+/// What is promised of a case. D12 in windows keeps `d12` and, of a smooth case, a tenth of the
+/// published coefficient of variation; D16 over the whole run keeps `d16`. Faint parameters have
+/// bounds of their own.
+struct Promise {
+  Bound d8, faint_d8, d12;
+  double d16_error{0.0}, faint_d16_error{0.0};
+  bool tenth_of_published{false};
+};
+inline constexpr Promise kSmooth{{1e-5, 5e-5}, {1e-2, 2e-2}, {.error = 1e-6}, 1e-8, 1e-7, true};
+[[nodiscard]] constexpr Promise friction_promise(double error, double spread) {
+  const Bound bound{error, spread};
+  return {bound, bound, bound, 1e-8, 1e-8, false};
+}
+
+/// Estimates of one method for every unknown.
+struct MethodResult {
+  std::string method;
+  std::vector<double> value;
+  std::vector<double> std;
+  std::size_t rows{0};
+  std::size_t windows{0};
+};
+
+/// Least squares over sequential sets of `window_rows` usable instants.
+template <class Rows, class M>
+[[nodiscard]] MethodResult over_windows(const Measured<M::kDof>& measured, const M& model,
+                                        std::size_t window_rows) {
+  MethodResult out;
+  SequentialWindows<M::kUnknowns> windows{static_cast<std::int64_t>(window_rows) * M::kDof,
+                                          kLeastPivot};
+  for_each_row<Rows>(measured, model, [&](const MotionRow<M>& row) {
+    ++out.rows;
+    for (int d = 0; d < M::kDof; ++d) windows.absorb(row.equation(d));
+  });
+  out.windows = static_cast<std::size_t>(windows.scatter().count());
+  const auto deviation = windows.scatter().deviation();
+  for (int i = 0; i < M::kUnknowns; ++i) {
+    out.value.push_back(windows.scatter().mean()[i]);
+    out.std.push_back(out.windows < 2 ? NAN : deviation[i]);
+  }
+  return out;
+}
+
+/// Recursive least squares over the whole run; deviations from the residual.
+template <class Rows, class M>
+[[nodiscard]] MethodResult over_run(const Measured<M::kDof>& measured, const M& model) {
+  MethodResult out;
+  RecursiveEstimate<M::kUnknowns> estimate{0.0, {.tolerance = kLeastPivot}};
+  for_each_row<Rows>(measured, model, [&](const MotionRow<M>& row) {
+    ++out.rows;
+    for (int d = 0; d < M::kDof; ++d) estimate.absorb(row.equation(d));
+  });
+  const bool solved = estimate.update();
+  for (int i = 0; i < M::kUnknowns; ++i) {
+    out.value.push_back(solved ? estimate.latest().theta[i] : NAN);
+    out.std.push_back(solved ? estimate.latest().deviation[i] : NAN);
+  }
+  return out;
+}
+
+[[nodiscard]] Estimate make_estimate(const MethodResult& result, std::size_t unknown, double truth,
+                                     const Bound& bound);
+/// The case without its estimates.
+[[nodiscard]] CaseFigures describe(const PublishedCase& published);
+
+/// The case by D8 in windows (the publication's way), by D12 in windows, and by D16 over the run.
+template <class M>
+[[nodiscard]] CaseFigures recompute(const PublishedCase& published, const M& model,
+                                    const Promise& promise, std::size_t window_rows = 32) {
+  const auto input = measured<M::kDof>(published.simulate(), published.chain.mass_kg);
+  MethodResult d8 = over_windows<MotionRows<D8, M>>(input, model, window_rows);
+  MethodResult d12 = over_windows<MotionRows<D12, M>>(input, model, window_rows);
+  MethodResult d16 = over_run<MotionRows<D16, M>>(input, model);
+  d8.method = fmt::format("D8, windows of {} rows", window_rows);
+  d12.method = fmt::format("D12, windows of {} rows", window_rows);
+  d16.method = "D16, recursive over the run";
+  CaseFigures out = describe(published);
+  for (std::size_t i = 0; i < published.parameters.size(); ++i) {
+    const PublishedParameter& parameter = published.parameters[i];
+    Bound d12_bound = promise.d12;
+    if (promise.tenth_of_published && parameter.spread) d12_bound.spread = *parameter.spread / 10.0;
+    const Bound d16_bound{.error = parameter.faint ? promise.faint_d16_error : promise.d16_error};
+    const Bound& d8_bound = parameter.faint ? promise.faint_d8 : promise.d8;
+    out.parameters[i].estimates = {make_estimate(d8, i, parameter.truth, d8_bound),
+                                   make_estimate(d12, i, parameter.truth, d12_bound),
+                                   make_estimate(d16, i, parameter.truth, d16_bound)};
+  }
+  return out;
+}
+
+}  // namespace dampline::app

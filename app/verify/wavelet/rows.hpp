@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "dampline/wavelet/motion_rows.hpp"
+#include "sim_hw/reference/cooper_verner.hpp"
+#include "sim_hw/reference/trajectory.hpp"
+
+namespace dampline::app {
+
+/// Least pivot of a column that still counts as determined: noiseless windows are short and smooth.
+inline constexpr double kLeastPivot = 1e-14;
+
+/// What the core sees of a system: deflections and forces, the masses, the step.
+template <int Dof>
+struct Measured {
+  MotionRowsConfig<Dof> config;
+  std::vector<MotionSample<Dof>> samples;
+};
+
+template <int Dof>
+[[nodiscard]] Measured<Dof> measured(const sim::reference::Trajectory& truth,
+                                     const std::vector<sim::reference::Real>& mass_kg) {
+  Measured<Dof> out;
+  out.config.step_s = truth.step_s;
+  out.samples.resize(truth.deflection_m.front().size());
+  for (std::size_t d = 0; d < static_cast<std::size_t>(Dof); ++d) {
+    out.config.mass_kg[d] = static_cast<double>(mass_kg[d]);
+    for (std::size_t n = 0; n < out.samples.size(); ++n) {
+      out.samples[n].deflection_m[d] = truth.deflection_m[d][n];
+      out.samples[n].force_n[d] = truth.force_n[d][n];
+    }
+  }
+  return out;
+}
+
+/// Streams the samples through the core's rows (`Rows` is MotionRows or CoarseRows) and calls
+/// `use(row)` with each usable one.
+template <class Rows, class M, class Use>
+void for_each_row(const Measured<M::kDof>& measured, const M& model, Use&& use) {
+  Rows rows = Rows::make(measured.config, model).value();
+  MotionRow<M> row;
+  for (const MotionSample<M::kDof>& sample : measured.samples) {
+    if (rows.push(sample, row) && row.usable) use(row);
+  }
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/error.hpp"
+#include "app/verify/wavelet.hpp"
+#include "app/verify/wavelet/properties.hpp"
+#include "app/verify/wavelet/selection.hpp"
+
+namespace dampline::app {
+namespace {
+
+double found(const CheckGroup& group, const std::string& what) {
+  const auto it = std::find_if(group.checks.begin(), group.checks.end(),
+                               [&](const Check& check) { return check.what == what; });
+  EXPECT_NE(it, group.checks.end()) << what;
+  return it == group.checks.end() ? NAN : it->found;
+}
+
+/// `true_mse_percent`: as published, one per system.
+void expect_selection(const std::vector<CheckGroup>& groups,
+                      const std::vector<double>& true_mse_percent) {
+  ASSERT_EQ(groups.size(), true_mse_percent.size());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double true_mse = found(groups[i], "MSE, true model, D8");
+    EXPECT_LT(true_mse, true_mse_percent[i]) << groups[i].title;
+    EXPECT_GT(true_mse, 0.0);
+    EXPECT_GE(found(groups[i], "MSE, linear model, D8"), 100.0 * true_mse) << groups[i].title;
+    EXPECT_GT(found(groups[i], "least |t| of a true term, D16"), 10.0) << groups[i].title;
+    EXPECT_LT(found(groups[i], "largest |t| of a spurious term, D16"), 4.0) << groups[i].title;
+    EXPECT_EQ(found(groups[i], "terms chosen wrongly or missed, D8"), 0.0) << groups[i].title;
+    EXPECT_EQ(found(groups[i], "terms chosen wrongly or missed, D16"), 0.0) << groups[i].title;
+  }
+}
+
+TEST(Table17, TellsTrueTermsFromSpuriousOnes) {
+  expect_selection(single_selection(), {2.2e-10, 2.9e-7, 1.2e-3, 5.6e-8});
+}
+
+TEST(Table18, TellsTrueTermsFromSpuriousOnes) {
+  expect_selection(chain_selection(), {4.8e-10, 3.6e-9, 1.1e-9});
+}
+
+TEST(StiffnessDrop, IsFoundWithinOneWindow) {
+  const CheckGroup group = stiffness_drop().front();
+  EXPECT_LE(found(group, "samples until k is within 1e-4 of its new value, for good"), 45.0);
+  EXPECT_GE(found(group, "samples until k is within 1e-4 of its new value, for good"), 10.0);
+  EXPECT_NEAR(found(group, "k by the first window after the drop"), 0.8, 1e-5);
+}
+
+TEST(Recursive, EqualsBatch) {
+  const CheckGroup group = recursive_against_batch().front();
+  EXPECT_LE(found(group, "whole run, double"), 1e-12);
+  EXPECT_LE(found(group, "windows of 32 rows, ring of 4 factors, double"), 1e-10);
+  EXPECT_LE(found(group, "whole run, single"), 1e-4);
+  EXPECT_GT(found(group, "whole run, single"), 1e-9);
+}
+
+TEST(TwelveBits, NeedACoarserLevel) {
+  const CaseFigures figures = quantised_duffing_result();
+  for (const ParameterFigures& parameter : figures.parameters) {
+    const auto& by = parameter.estimates;
+    EXPECT_LE(std::abs(by[3].error), 5e-4) << parameter.name << ", " << by[3].method;
+    EXPECT_LE(std::abs(by[4].error), 5e-4) << parameter.name << ", " << by[4].method;
+    EXPECT_LT(by[4].spread, by[1].spread) << parameter.name;
+  }
+}
+
+TEST(Bound, IsMissedByWhatIsNotANumber) {
+  EXPECT_FALSE((Estimate{.error = NAN, .bound = {.error = 1.0}}.met()));
+  EXPECT_FALSE((Estimate{.error = 0.1, .spread = 3.0, .bound = {1.0, 2.0}}.met()));
+  EXPECT_FALSE((Estimate{.error = -1.5, .bound = {1.0, 2.0}}.met()));
+  EXPECT_TRUE((Estimate{.error = -0.5, .spread = 1.0, .bound = {1.0, 2.0}}.met()));
+  EXPECT_FALSE((Check{.found = NAN, .at_most = 1.0}.met()));
+  EXPECT_FALSE((Check{.found = 1.0, .at_least = 2.0}.met()));
+}
+
+TEST(Bound, IsCountedWhereThereIsOne) {
+  WaveletFigures figures;
+  figures.groups.push_back(
+      {.checks = {{.found = 1.0, .at_most = 2.0}, {.found = 3.0, .at_most = 2.0}, {.found = 5.0}}});
+  const Tally count = tally(figures);
+  EXPECT_EQ(count.bound, 2U);
+  EXPECT_EQ(count.met, 1U);
+}
+
+std::string printed(const VerifyOptions& options) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(verify_wavelet(options), 0);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(VerifyWavelet, PrintsATableInEveryForm) {
+  const auto json = nlohmann::json::parse(printed({.json = true, .tables = {"12"}}));
+  const auto& friction = json.at("cases").at(0).at("parameters").at(2);
+  EXPECT_EQ(friction.at("name"), "e");
+  EXPECT_EQ(friction.at("unit"), "N");
+  EXPECT_EQ(friction.at("published").at("value"), 0.206);
+  EXPECT_NEAR(friction.at("estimates").at(0).at("value").get<double>(), 0.2, 1e-6);
+  const std::string text = printed({.tables = {"12"}});
+  EXPECT_NE(text.find("Table 12: Coulomb friction, free"), std::string::npos);
+  EXPECT_NE(text.find("9 of 9 bounds met"), std::string::npos) << text;
+  const std::string markdown = printed({.markdown = true, .tables = {"12"}});
+  EXPECT_NE(markdown.find("| 12 | Coulomb friction, free | e | 0.2 N | 0.206 |"), std::string::npos)
+      << markdown;
+  EXPECT_EQ(printed({.quiet = true, .tables = {"12"}}), "");
+}
+
+TEST(VerifyWavelet, RefusesATableThatIsNotThere) {
+  EXPECT_THROW(static_cast<void>(verify_wavelet({.quiet = true, .tables = {"2"}})), UsageError);
+}
+
+}  // namespace
+}  // namespace dampline::app

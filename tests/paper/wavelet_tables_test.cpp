@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// The tables of Ghanem and Romeo (2001), each with this project's own bounds written out here.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "app/verify/wavelet/case_results.hpp"
+
+namespace dampline::app {
+namespace {
+
+enum Method : std::size_t { kD8Windows, kD12Windows, kD16Recursive };
+
+void expect_error(const ParameterFigures& parameter, Method method, double error) {
+  ASSERT_EQ(parameter.estimates.size(), 3U);
+  const Estimate& found = parameter.estimates[method];
+  EXPECT_LE(std::abs(found.error), error) << parameter.name << ", " << found.method;
+  // The stated error is that of the stated value.
+  const double absolute = found.value - parameter.truth;
+  EXPECT_NEAR(found.error, parameter.truth == 0.0 ? absolute : absolute / parameter.truth,
+              1e-9 * std::abs(found.error));
+  EXPECT_GT(found.rows, 50U);
+}
+
+void expect_spread(const ParameterFigures& parameter, Method method, double spread) {
+  ASSERT_EQ(parameter.estimates.size(), 3U);
+  const Estimate& found = parameter.estimates[method];
+  EXPECT_LE(found.spread, spread) << parameter.name << ", " << found.method;
+  EXPECT_GT(found.spread, 0.0);
+  EXPECT_GE(found.windows, 3U);
+}
+
+struct SmoothCase {
+  const char* name;
+  CaseFigures (*run)();
+  bool faint_cubic{false};  ///< table 10: hardly excited
+};
+
+const SmoothCase kSmoothCases[]{{"Table1", product_result},
+                                {"Table3Duffing", [] { return duffing_result(true); }},
+                                {"Table3And4VanDerPol", [] { return van_der_pol_result(true); }},
+                                {"Table5Duffing", [] { return duffing_result(false); }},
+                                {"Table5And6VanDerPol", [] { return van_der_pol_result(false); }},
+                                {"Table8", [] { return duffing_chain_result(true); }},
+                                {"Table9", [] { return van_der_pol_chain_result(true); }},
+                                {"Table10", [] { return duffing_chain_result(false); }, true},
+                                {"Table11", [] { return van_der_pol_chain_result(false); }}};
+
+class SmoothTable : public testing::TestWithParam<SmoothCase> {};
+
+TEST_P(SmoothTable, IsBeatenByEachWavelet) {
+  const CaseFigures figures = GetParam().run();
+  ASSERT_GE(figures.parameters.size(), 3U);
+  for (const ParameterFigures& parameter : figures.parameters) {
+    const bool faint = GetParam().faint_cubic && parameter.name.starts_with("k3");
+    expect_error(parameter, kD8Windows, faint ? 1e-2 : 1e-5);
+    expect_spread(parameter, kD8Windows, faint ? 2e-2 : 5e-5);
+    expect_error(parameter, kD12Windows, 1e-6);
+    ASSERT_TRUE(parameter.published_spread) << parameter.name;
+    expect_spread(parameter, kD12Windows, *parameter.published_spread / 10.0);
+    expect_error(parameter, kD16Recursive, faint ? 1e-7 : 1e-8);
+    for (const Estimate& estimate : parameter.estimates)
+      EXPECT_TRUE(estimate.met()) << parameter.name << ", " << estimate.method;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(GhanemRomeo, SmoothTable, testing::ValuesIn(kSmoothCases),
+                         [](const auto& one) { return std::string{one.param.name}; });
+
+struct FrictionCase {
+  const char* name;
+  CaseFigures (*run)();
+  double error, spread;
+};
+
+const FrictionCase kFrictionCases[]{
+    {"Table12", coulomb_free_result, 1e-6, 1e-5},
+    {"Table13Exact", coulomb_forced_result, 1e-6, 1e-5},
+    {"Table13Tanh", coulomb_tanh_result, 1e-5, 2e-5},
+    {"Table14", coulomb_chain_result, 1e-5, 5e-5},
+    {"Table15FastSlight", [] { return linear_coulomb_result(1.2, 5); }, 1e-6, 1e-5},
+    {"Table15FastStrong", [] { return linear_coulomb_result(1.2, 10); }, 1e-6, 1e-5},
+    {"Table15SlowSlight", [] { return linear_coulomb_result(0.6, 5); }, 1e-6, 1e-5},
+    {"Table15SlowStrong", [] { return linear_coulomb_result(0.6, 10); }, 1e-6, 1e-5},
+    {"Table16", teflon_result, 1e-5, 2e-5}};
+
+class FrictionTable : public testing::TestWithParam<FrictionCase> {};
+
+TEST_P(FrictionTable, IsBeaten) {
+  const CaseFigures figures = GetParam().run();
+  ASSERT_GE(figures.parameters.size(), 3U);
+  for (const ParameterFigures& parameter : figures.parameters) {
+    expect_error(parameter, kD8Windows, GetParam().error);
+    expect_spread(parameter, kD8Windows, GetParam().spread);
+    expect_error(parameter, kD12Windows, GetParam().error);
+    expect_spread(parameter, kD12Windows, GetParam().spread);
+    expect_error(parameter, kD16Recursive, 1e-8);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(GhanemRomeo, FrictionTable, testing::ValuesIn(kFrictionCases),
+                         [](const auto& one) { return std::string{one.param.name}; });
+
+TEST(SignRepresentations, AllServeOverLongWindows) {
+  for (const auto run : {coulomb_erf_result, coulomb_arctangent_result, coulomb_rational_result}) {
+    const CaseFigures figures = run();
+    for (const ParameterFigures& parameter : figures.parameters) {
+      expect_error(parameter, kD8Windows, 1e-5);
+      expect_spread(parameter, kD8Windows, 2e-5);
+      expect_error(parameter, kD16Recursive, 1e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dampline::app
