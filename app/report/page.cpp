@@ -24,6 +24,12 @@ constexpr std::string_view kRigCurveText =
     "truth "
     "in about 19 of 20 cases, provided that the model fits. The strip at the bottom shows how many "
     "samples stand behind each part.";
+constexpr std::string_view kMethodText =
+    "The force against the direction of motion, as each method finds it. What stands on an "
+    "assumption that this record contradicts is drawn grey and dashed.";
+constexpr std::string_view kDensityText =
+    "How often each deflection and each velocity occurred, as densities. The thin line is the "
+    "normal distribution of the same mean and variance.";
 constexpr std::string_view kConvergenceText =
     "The same parameters as they were known at each moment of the record. A line that has come to "
     "rest inside a shrinking band is settled; one that still wanders is not.";
@@ -70,6 +76,9 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
                                                             truck ? kCurveText : kRigCurveText));
   body += section("Parameters", parameter_section(result));
   body += section("Quality", quality_section(result));
+  body += section("Other methods", artist.figure(plot_methods(result), "methods", kMethodText) +
+                                       method_section(result));
+  body += section("Densities", artist.figure(plot_densities(result), "densities", kDensityText));
   body += section("How the estimate settled",
                   artist.figure(plot_convergence(result), "convergence", kConvergenceText));
   body +=

@@ -16,6 +16,10 @@ struct PlotScript {
 
 /// The damping curve with its band, and below it how many samples support each part.
 [[nodiscard]] PlotScript plot_curve(const RunResult& result);
+/// The same curve as other methods see it; what is not to be trusted is grey.
+[[nodiscard]] PlotScript plot_methods(const RunResult& result);
+/// Densities of deflection and velocity.
+[[nodiscard]] PlotScript plot_densities(const RunResult& result);
 /// Every followed parameter over time, with its band.
 [[nodiscard]] PlotScript plot_convergence(const RunResult& result);
 /// Deflection and velocity: an excerpt.

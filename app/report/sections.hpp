@@ -12,6 +12,9 @@ namespace dampline::app {
 [[nodiscard]] std::string parameter_section(const RunResult& result);
 [[nodiscard]] std::string quality_section(const RunResult& result);
 [[nodiscard]] std::string excluded_section(const RunResult& result);
+/// The methods beside the wavelet windows; those that the record contradicts are grey, with the
+/// reasons. Empty where there are none.
+[[nodiscard]] std::string method_section(const RunResult& result);
 /// Of a live run; empty for a record.
 [[nodiscard]] std::string live_section(const RunResult& result);
 [[nodiscard]] std::string provenance_section(const Provenance& provenance,

@@ -20,6 +20,7 @@ th, td { padding: 0.25rem 1rem 0.25rem 0; text-align: left; border-bottom: 1px s
          vertical-align: top; overflow-wrap: anywhere; }
 th { color: #555; font-weight: normal; border-bottom: 1px solid #bbb; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+tr.grey td { color: #888; }
 ul { padding-left: 1.2rem; }
 pre { background: #f6f6f6; padding: 0.8rem; overflow-x: auto; font-size: 0.82rem; line-height: 1.35; }
 code { font-size: 0.9em; overflow-wrap: anywhere; }

@@ -33,7 +33,8 @@ auto read_extra(const std::filesystem::path& file, Read read) {
 void stage_files(const RunFiles& files, RunDirectory& directory) {
   const RunResult& result = files.result;
   directory.write("parameters.json", to_json(result));
-  directory.write("curve.csv", to_csv(result.curve));
+  directory.write("curve.csv", to_csv(result.curve, result.methods));
+  if (!result.densities.empty()) directory.write("densities.csv", to_csv(result.densities));
   if (!files.state.empty()) directory.write("state.dls", files.state);
   if (!result.convergence.rows.empty())
     directory.write("convergence.csv", to_csv(result.convergence));
@@ -55,7 +56,8 @@ RunFiles read_files(const std::filesystem::path& run) {
   const auto parameters = run / "parameters.json";
   files.result = from_json(read_text(parameters), parameters.string());
   const auto curve = run / "curve.csv";
-  files.result.curve = read_curve(read_text(curve), curve.string());
+  read_curve(read_text(curve), curve.string(), files.result);
+  files.result.densities = read_extra(run / "densities.csv", read_densities);
   files.result.convergence = read_extra(run / "convergence.csv", read_convergence);
   files.result.motion = read_extra(run / "motion.csv", read_motion);
   files.result.force = read_extra(run / "force.csv", read_force);

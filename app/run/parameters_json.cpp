@@ -67,6 +67,24 @@ Json parameters(const RunResult& result) {
   return list;
 }
 
+Json methods(const RunResult& result) {
+  Json list = Json::array();
+  for (const MethodResult& m : result.methods) {
+    Json objections = Json::array();
+    for (const Objection& o : m.objections)
+      objections.push_back(
+          {{"reason", o.reason}, {"size", o.size}, {"limit", o.limit}, {"unit", o.unit}});
+    Json level = nullptr;
+    if (m.has_level) level = {{"value", m.level_n.value}, {"std", m.level_n.std}, {"unit", "N"}};
+    list.push_back({{"name", m.name},
+                    {"title", m.title},
+                    {"coulomb", level},
+                    {"trusted", m.trusted},
+                    {"objections", objections}});
+  }
+  return list;
+}
+
 double read_number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
@@ -80,6 +98,22 @@ void read_parameters(const Json& list, RunResult& result) {
   for (const Json& p : list)
     result.parameters.push_back({p.at("name"), read_number(p.at("value")), read_number(p.at("std")),
                                  p.at("unit").get<std::string>()});
+}
+
+void read_methods(const Json& list, RunResult& result) {
+  for (const Json& m : list) {
+    MethodResult& method = result.methods.emplace_back();
+    method.name = m.at("name");
+    method.title = m.at("title");
+    const Json& level = m.at("coulomb");
+    method.has_level = !level.is_null();
+    if (method.has_level)
+      method.level_n = {read_number(level.at("value")), read_number(level.at("std"))};
+    method.trusted = m.at("trusted");
+    for (const Json& o : m.at("objections"))
+      method.objections.push_back({o.at("reason"), read_number(o.at("size")),
+                                   read_number(o.at("limit")), o.at("unit").get<std::string>()});
+  }
 }
 
 RunResult read_result(const Json& json) {
@@ -105,6 +139,7 @@ RunResult read_result(const Json& json) {
   result.warnings = json.at("warnings");
   result.notes = json.at("notes");
   result.events_more = json.value("events_more", std::uint64_t{0});
+  if (json.contains("methods")) read_methods(json.at("methods"), result);
   if (json.contains("live")) result.live = read_live(json.at("live"));
   return result;
 }
@@ -134,6 +169,7 @@ std::string to_json(const RunResult& result) {
             {"warnings", result.warnings},
             {"notes", result.notes}};
   if (result.events_more > 0) json["events_more"] = result.events_more;
+  if (!result.methods.empty()) json["methods"] = methods(result);
   if (result.live) json["live"] = live(*result.live);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/run/methods.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {
@@ -110,6 +111,8 @@ struct RunResult {
   std::vector<std::string> warnings;  ///< what a reader must know before trusting the numbers
   std::vector<std::string> notes;
   std::vector<CurveRow> curve;  ///< ascending velocity; a jump at 0 is two rows with velocity 0
+  std::vector<MethodResult> methods;  ///< beside the wavelet windows, where they were asked for
+  std::vector<DensityTable> densities;
   Convergence convergence;
   std::vector<MotionRow> motion;   ///< an excerpt of at most 20 s
   std::vector<ForceRow> force;     ///< an excerpt; empty for a truck

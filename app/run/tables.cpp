@@ -57,10 +57,26 @@ std::vector<std::string> read_rows(std::string_view text, const std::string& ori
 
 }  // namespace
 
-std::string to_csv(const std::vector<CurveRow>& curve) {
-  std::string out = "velocity_mps,force_n,std_n,samples\n";
-  for (const CurveRow& r : curve)
-    out += fmt::format("{:.9g},{:.9g},{:.6g},{}\n", r.velocity_mps, r.force_n, r.std_n, r.samples);
+std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodResult>& methods) {
+  std::string out = "velocity_mps,force_n,std_n,samples";
+  for (const MethodResult& m : methods) out += fmt::format(",{0}_n,{0}_std_n", m.name);
+  out += '\n';
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const CurveRow& r = curve[i];
+    out += fmt::format("{:.9g},{:.9g},{:.6g},{}", r.velocity_mps, r.force_n, r.std_n, r.samples);
+    for (const MethodResult& m : methods)
+      out += fmt::format(",{:.9g},{:.6g}", m.curve_n.at(i).value, m.curve_n.at(i).std);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string to_csv(const std::vector<DensityTable>& densities) {
+  std::string out = "quantity,centre,density,samples,outside_share\n";
+  for (const DensityTable& table : densities)
+    for (const DensityRow& r : table.rows)
+      out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g}\n", table.quantity, r.centre, r.density,
+                         r.samples, table.outside_share);
   return out;
 }
 
@@ -106,13 +122,29 @@ std::string to_csv(const std::vector<RunEvent>& events) {
   return out;
 }
 
-std::vector<CurveRow> read_curve(std::string_view text, const std::string& origin) {
-  std::vector<CurveRow> curve;
+void read_curve(std::string_view text, const std::string& origin, RunResult& result) {
   read_rows(text, origin, [&](const Cells& c) {
-    curve.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)),
-                     static_cast<std::uint64_t>(number(c.at(3)))});
+    result.curve.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)),
+                            static_cast<std::uint64_t>(number(c.at(3)))});
+    const std::size_t expected = 4 + 2 * result.methods.size();
+    if (c.size() < expected)
+      throw RunError{
+          fmt::format("{} columns, expected {}: a force and its deviation for each "
+                      "method of parameters.json",
+                      c.size(), expected)};
+    for (std::size_t i = 0; i < result.methods.size(); ++i)
+      result.methods[i].curve_n.push_back({number(c.at(4 + 2 * i)), number(c.at(5 + 2 * i))});
   });
-  return curve;
+}
+
+std::vector<DensityTable> read_densities(std::string_view text, const std::string& origin) {
+  std::vector<DensityTable> densities;
+  read_rows(text, origin, [&](const Cells& c) {
+    if (densities.empty() || densities.back().quantity != c.at(0))
+      densities.push_back({std::string{c.at(0)}, number(c.at(4)), {}});
+    densities.back().rows.push_back({number(c.at(1)), number(c.at(2)), number(c.at(3))});
+  });
+  return densities;
 }
 
 Convergence read_convergence(std::string_view text, const std::string& origin) {

@@ -36,6 +36,26 @@ inline RunResult fake_result() {
   for (int i = 0; i < 8; ++i)
     r.curve.push_back(
         {nodes[i], 8351.0 - 30.0 * i, 18.0 + 12.0 * i, std::uint64_t(9100 / (1 + i * i))});
+  MethodResult weak{"fokker_planck_weak",
+                    "Fokker-Planck, weak form",
+                    {5120.0, 90.0},
+                    true,
+                    false,
+                    {{"the input is not white: <comb>", 14.2, 6.0, "dB"}},
+                    {}};
+  MethodResult known{"known_input", "known input", {8290.0, 60.0}, true, true, {}, {}};
+  for (const CurveRow& row : r.curve) {
+    weak.curve_n.push_back({0.6 * row.force_n, 90.0});
+    known.curve_n.push_back({0.99 * row.force_n, 60.0});
+  }
+  weak.curve_n[0] = {std::nan(""), std::nan("")};  // no support
+  r.methods = {weak, known};
+  for (const char* quantity : {"deflection_m", "velocity_mps"}) {
+    DensityTable table{quantity, 0.002, {}};
+    for (int i = -20; i <= 20; ++i)
+      table.rows.push_back({2e-4 * i, 800.0 * std::exp(-0.01 * i * i), 100.0});
+    r.densities.push_back(table);
+  }
   r.convergence.names = {"coulomb", "stiffness"};
   r.convergence.units = {"N", "N/m"};
   for (int i = 1; i <= 75; ++i) {

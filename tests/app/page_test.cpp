@@ -39,10 +39,18 @@ TEST(Page, HoldsEverythingAndNeedsNothingElse) {
     EXPECT_THAT(page.html, Not(HasSubstr(outside)));
   if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot here: the drawings were not looked at";
   EXPECT_EQ(page.warning, "");
-  EXPECT_EQ(count(page.html, "<svg"), 4U);
+  EXPECT_EQ(count(page.html, "<svg"), 6U);
   for (const char* label : {"damping force F (kN)", "relative velocity v (mm/s)",
-                            "time in the record (s)", "stiffness (MN/m)", "coulomb (kN)"})
+                            "time in the record (s)", "stiffness (MN/m)", "coulomb (kN)",
+                            "F sign v (kN)", "relative deflection y (mm)", "density (s/mm)"})
     EXPECT_THAT(page.html, HasSubstr(label));
+}
+
+TEST(Page, ShowsAMethodThatIsNotToBeTrustedInGreyWithTheReason) {
+  const std::string html = make_page(fake_result(), some_provenance(), "").html;
+  EXPECT_THAT(html, AllOf(HasSubstr("<tr class=\"grey\"><td>Fokker-Planck, weak form"),
+                          HasSubstr("&lt;comb&gt;: 14.2 dB, tolerated 6 dB"),
+                          HasSubstr("<tr><td>known input"), HasSubstr("-0.7 %")));
 }
 
 TEST(Page, IsWrittenWithoutGnuplotAndSaysWhatToInstall) {

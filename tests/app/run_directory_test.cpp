@@ -119,7 +119,8 @@ TEST_F(RunDirectoryTest, ReadsBackWhatItWrote) {
   directory.commit();
   const RunFiles back = read_files(folder_ / "run");
   EXPECT_EQ(to_json(back.result), to_json(result));
-  EXPECT_EQ(to_csv(back.result.curve), to_csv(result.curve));
+  EXPECT_EQ(to_csv(back.result.curve, back.result.methods), to_csv(result.curve, result.methods));
+  EXPECT_EQ(to_csv(back.result.densities), to_csv(result.densities));
   EXPECT_EQ(to_csv(back.result.convergence), to_csv(result.convergence));
   EXPECT_EQ(to_csv(back.result.motion), to_csv(result.motion));
   EXPECT_EQ(to_csv(back.result.excluded), to_csv(result.excluded));
@@ -131,13 +132,15 @@ TEST_F(RunDirectoryTest, NamesTheFileAndLineThatIsDamaged) {
   stage_files({fake_result(), write_run_toml(Config{}, {}), ""}, directory);
   directory.commit();
   std::ofstream{folder_ / "run" / "curve.csv"}
-      << "velocity_mps,force_n,std_n,samples\n1,2,3,4\n1,x,3,4\n";
+      << "velocity_mps,force_n,std_n,samples,a,b,c,d\n1,2,3,4,5,6,7,8\n1,x,3,4,5,6,7,8\n";
   try {
     static_cast<void>(read_files(folder_ / "run"));
     ADD_FAILURE();
   } catch (const RunError& error) {
     EXPECT_THAT(error.what(), HasSubstr("curve.csv:3: \"x\""));
   }
+  std::ofstream{folder_ / "run" / "curve.csv"} << "velocity_mps,force_n,std_n,samples\n1,2,3,4\n";
+  EXPECT_THROW(static_cast<void>(read_files(folder_ / "run")), RunError);  // no columns of methods
   fs::remove(folder_ / "run" / "run.toml");
   EXPECT_THROW(static_cast<void>(read_files(folder_ / "run")), RunError);
 }
