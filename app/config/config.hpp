@@ -58,6 +58,7 @@ struct ModelConfig {
 };
 
 struct EstimateConfig {
+  std::string methods{"wavelet"};  ///< of a truck: "wavelet", or "all": the others beside it
   std::string memory{"infinite"};  ///< "infinite", "window" or "forgetting"
   double window_s{600.0};
   double time_constant_s{600.0};

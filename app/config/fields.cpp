@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kInertiaWords{"none", "identify"};
 constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "none"};
+constexpr std::array<std::string_view, 2> kMethodWords{"wavelet", "all"};
 constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
 constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
 constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
@@ -85,6 +86,9 @@ void add_model(ModelConfig& model, Fields& out) {
 }
 
 void add_estimate(EstimateConfig& estimate, Fields& out) {
+  out.push_back({"estimate", "methods",
+                 "of a truck: wavelet, or all: Fokker-Planck, known input and phase beside it",
+                 TextField{&estimate.methods, kMethodWords}});
   out.push_back({"estimate", "memory", "infinite, window or forgetting",
                  TextField{&estimate.memory, kMemoryWords}});
   out.push_back({"estimate", "window_s", "length of the window",

@@ -28,6 +28,7 @@ namespace {
 struct Options {
   SourceOptions source;
   std::string config;
+  std::string methods;
   std::string out;
   bool json{false};
   bool quiet{false};
@@ -87,8 +88,14 @@ Identified find(const Options& options, const Config& config, SourceKind kind,
                        {place, blackbox_of(options, place), progress});
 }
 
+Config config_of(const Options& options) {
+  Config config = options.config.empty() ? Config{} : load_config(options.config);
+  if (!options.methods.empty()) config.estimate.methods = options.methods;
+  return config;
+}
+
 int identify(const Options& options) {
-  const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  const Config config = config_of(options);
   const SourceKind kind = detect_source(config, options.source);
   check_live_flags(options, kind);
   const std::filesystem::path place = place_of(options);
@@ -145,6 +152,10 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "
                    "their header and candump logs by the project's DBC");
+  verb->add_option("--methods", options.methods,
+                   "of a truck: wavelet, or all: Fokker-Planck, known input and phase beside it; "
+                   "default: as configured, else wavelet")
+      ->check(CLI::IsMember({"wavelet", "all"}));
   verb->add_option("--out", options->out,
                    "run directory; default: a new one named after the source");
   verb->add_flag("--force", options->force, "replace an earlier run in --out");
