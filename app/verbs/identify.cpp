@@ -152,7 +152,7 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "
                    "their header and candump logs by the project's DBC");
-  verb->add_option("--methods", options.methods,
+  verb->add_option("--methods", options->methods,
                    "of a truck: wavelet, or all: Fokker-Planck, known input and phase beside it; "
                    "default: as configured, else wavelet")
       ->check(CLI::IsMember({"wavelet", "all"}));
