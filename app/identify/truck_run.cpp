@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "app/error.hpp"
+#include "app/identify/other_methods.hpp"
 #include "app/identify/truck_result.hpp"
 #include "app/run/state_file.hpp"
 #include "app/text/quantity.hpp"
@@ -83,6 +84,7 @@ TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
     : core_{with_screen(identifier_config(config), screen)},
       config_{config},
       identifier_{std::make_unique<Identifier>(core_)},
+      methods_{std::make_unique<Methods>(core_)},
       block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
       history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
       excerpt_{core_.sample_rate_hz} {}
@@ -98,6 +100,7 @@ void TruckRun::take(const Sample& sample) {
   clipping_.take(sample);
   const UpdateResult result = identifier_->update(sample);
   if (result.has_motion) excerpt_.take(result.motion);
+  methods_->update(result);
   if (!result.block_closed) return;
   note_block(result.block);
   if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->snapshot());
@@ -139,6 +142,10 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
   result.latency_s = identifier_->motion_latency_s();
   fill_history(history_.rows(), record, result);
   fill_motion(excerpt_.best(), record, result);
+  fill_densities(methods_->fokker_planck(), record, result);
+  if (config_.estimate.methods == "all")
+    fill_methods(methods_->fokker_planck(), core_.moving_mass_kg, last.snapshot.stiffness_npm.value,
+                 record, result);
   result.warnings = clipping_.warnings();
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();

@@ -13,6 +13,7 @@
 #include "app/identify/rate_correction.hpp"
 #include "app/run/result.hpp"
 #include "dampline/identifier.hpp"
+#include "dampline/methods.hpp"
 
 namespace dampline::app {
 
@@ -69,6 +70,7 @@ class TruckRun {
   IdentifierConfig core_;
   Config config_;
   std::unique_ptr<Identifier> identifier_;
+  std::unique_ptr<Methods> methods_;
   double block_ticks_;
   bool started_{false};
   std::int64_t first_tick_{0};

@@ -12,7 +12,7 @@ std::string with_unit(double value, const std::string& unit) {
   return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-std::string objections_of(const MethodResult& method) {
+std::string objections_of(const MethodSummary& method) {
   std::string out;
   for (const Objection& o : method.objections)
     out += fmt::format("<li>{}: {}, tolerated {}</li>", escape_html(o.reason),
@@ -21,7 +21,7 @@ std::string objections_of(const MethodResult& method) {
   return out.empty() ? "" : "<ul>" + out + "</ul>";
 }
 
-std::string level_of(const MethodResult& method) {
+std::string level_of(const MethodSummary& method) {
   if (!method.has_level) return "none";
   const QuantityText text = format_quantity(method.level_n.value, method.level_n.std);
   return fmt::format("{} ± {} N", text.value, text.std);
@@ -33,7 +33,7 @@ const Parameter* coulomb_of(const RunResult& result) {
   return nullptr;
 }
 
-std::string difference(const MethodResult& method, const Parameter* coulomb) {
+std::string difference(const MethodSummary& method, const Parameter* coulomb) {
   if (!method.has_level || coulomb == nullptr || coulomb->value == 0.0) return "";
   return fmt::format("{:+.1f} %", 100.0 * (method.level_n.value / coulomb->value - 1.0));
 }
@@ -46,7 +46,7 @@ std::string method_section(const RunResult& result) {
   std::string out =
       "<table><tr><th>method</th><th class=\"number\">Coulomb level</th><th class=\"number\">"
       "against the wavelet windows</th><th>to be trusted here</th></tr>\n";
-  for (const MethodResult& m : result.methods)
+  for (const MethodSummary& m : result.methods)
     out += fmt::format(
         "<tr{}><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}{}</td>"
         "</tr>\n",

@@ -27,7 +27,7 @@ std::string method_data(const RunResult& result, double factor) {
     }
     const double sign = factor * side_of(r.velocity_mps);
     data += fmt::format("{} {} {}", 1e3 * r.velocity_mps, sign * r.force_n, factor * r.std_n);
-    for (const MethodResult& m : result.methods)
+    for (const MethodSummary& m : result.methods)
       data += fmt::format(" {} {}", sign * m.curve_n.at(i).value, factor * m.curve_n.at(i).std);
     data += "\n";
   }
@@ -51,7 +51,7 @@ PlotScript plot_methods(const RunResult& result) {
       unit.name, kPlotBlue, kPlotBlue);
   std::size_t colour = 0;
   for (std::size_t m = 0; m < result.methods.size(); ++m) {
-    const MethodResult& method = result.methods[m];
+    const MethodSummary& method = result.methods[m];
     if (!method.has_level) continue;
     const std::string_view line = method.trusted ? kTrusted[colour++ % kTrusted.size()] : kGreyLine;
     script +=

@@ -17,7 +17,7 @@ struct Objection {
 };
 
 /// What another method than the wavelet windows makes of the same record.
-struct MethodResult {
+struct MethodSummary {
   std::string name;   ///< "fokker_planck_weak", ...: as in parameters.json and curve.csv
   std::string title;  ///< for people
   Estimate level_n;   ///< Coulomb level

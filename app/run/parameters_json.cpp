@@ -69,7 +69,7 @@ Json parameters(const RunResult& result) {
 
 Json methods(const RunResult& result) {
   Json list = Json::array();
-  for (const MethodResult& m : result.methods) {
+  for (const MethodSummary& m : result.methods) {
     Json objections = Json::array();
     for (const Objection& o : m.objections)
       objections.push_back(
@@ -102,7 +102,7 @@ void read_parameters(const Json& list, RunResult& result) {
 
 void read_methods(const Json& list, RunResult& result) {
   for (const Json& m : list) {
-    MethodResult& method = result.methods.emplace_back();
+    MethodSummary& method = result.methods.emplace_back();
     method.name = m.at("name");
     method.title = m.at("title");
     const Json& level = m.at("coulomb");

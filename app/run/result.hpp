@@ -111,7 +111,7 @@ struct RunResult {
   std::vector<std::string> warnings;  ///< what a reader must know before trusting the numbers
   std::vector<std::string> notes;
   std::vector<CurveRow> curve;  ///< ascending velocity; a jump at 0 is two rows with velocity 0
-  std::vector<MethodResult> methods;  ///< beside the wavelet windows, where they were asked for
+  std::vector<MethodSummary> methods;  ///< beside the wavelet windows, where they were asked for
   std::vector<DensityTable> densities;
   Convergence convergence;
   std::vector<MotionRow> motion;   ///< an excerpt of at most 20 s

@@ -57,14 +57,14 @@ std::vector<std::string> read_rows(std::string_view text, const std::string& ori
 
 }  // namespace
 
-std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodResult>& methods) {
+std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodSummary>& methods) {
   std::string out = "velocity_mps,force_n,std_n,samples";
-  for (const MethodResult& m : methods) out += fmt::format(",{0}_n,{0}_std_n", m.name);
+  for (const MethodSummary& m : methods) out += fmt::format(",{0}_n,{0}_std_n", m.name);
   out += '\n';
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const CurveRow& r = curve[i];
     out += fmt::format("{:.9g},{:.9g},{:.6g},{}", r.velocity_mps, r.force_n, r.std_n, r.samples);
-    for (const MethodResult& m : methods)
+    for (const MethodSummary& m : methods)
       out += fmt::format(",{:.9g},{:.6g}", m.curve_n.at(i).value, m.curve_n.at(i).std);
     out += '\n';
   }

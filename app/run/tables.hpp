@@ -12,7 +12,7 @@ namespace dampline::app {
 /// beginning of the record. The readers throw RunError naming `origin` and the line.
 /// curve.csv: after the curve itself a force and its deviation for each of `methods`.
 [[nodiscard]] std::string to_csv(const std::vector<CurveRow>& curve,
-                                 const std::vector<MethodResult>& methods);
+                                 const std::vector<MethodSummary>& methods);
 [[nodiscard]] std::string to_csv(const std::vector<DensityTable>& densities);
 [[nodiscard]] std::string to_csv(const Convergence& convergence);
 [[nodiscard]] std::string to_csv(const std::vector<MotionRow>& motion);

@@ -36,14 +36,14 @@ inline RunResult fake_result() {
   for (int i = 0; i < 8; ++i)
     r.curve.push_back(
         {nodes[i], 8351.0 - 30.0 * i, 18.0 + 12.0 * i, std::uint64_t(9100 / (1 + i * i))});
-  MethodResult weak{"fokker_planck_weak",
-                    "Fokker-Planck, weak form",
-                    {5120.0, 90.0},
-                    true,
-                    false,
-                    {{"the input is not white: <comb>", 14.2, 6.0, "dB"}},
-                    {}};
-  MethodResult known{"known_input", "known input", {8290.0, 60.0}, true, true, {}, {}};
+  MethodSummary weak{"fokker_planck_weak",
+                     "Fokker-Planck, weak form",
+                     {5120.0, 90.0},
+                     true,
+                     false,
+                     {{"the input is not white: <comb>", 14.2, 6.0, "dB"}},
+                     {}};
+  MethodSummary known{"known_input", "known input", {8290.0, 60.0}, true, true, {}, {}};
   for (const CurveRow& row : r.curve) {
     weak.curve_n.push_back({0.6 * row.force_n, 90.0});
     known.curve_n.push_back({0.99 * row.force_n, 60.0});
