@@ -197,15 +197,16 @@ DeflectionIntegrals deflection_integrals(const DeflectionHistogram& deflections,
 
 double speed_quantile(const VelocityHistogram& velocities, double share) noexcept {
   const auto& axis = velocities.axis();
-  double speed = axis.width();
-  for (; speed < axis.high(); speed += axis.width()) {
+  const auto largest = static_cast<int>(axis.high() / axis.width());
+  for (int widths = 1; widths < largest; ++widths) {
+    const double speed = widths * axis.width();
     double inside = 0.0;
     for (std::size_t b = 0; b < kVelocityBins; ++b) {
       if (std::abs(axis.centre(b)) < speed) inside += velocities.share(b);
     }
-    if (inside >= share) break;
+    if (inside >= share) return speed;
   }
-  return speed;
+  return axis.high();
 }
 
 PaperForm fit_paper_form(const VelocityHistogram& velocities,
