@@ -15,7 +15,8 @@ enum class Stream : std::uint64_t {
   kNodes,
   kTransport,
   kShocks,
-  kLateral
+  kLateral,
+  kFaults
 };
 
 /// xoshiro256++ (Blackman and Vigna 2019), seeded by splitmix64; normal numbers by Marsaglia's

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kStepS = 1.0 / kStepRateHz;
 constexpr std::int64_t kDecimation = kStepRateHz / kSampleRateHz;
+constexpr std::uint64_t kOwnTrackSalt = 0x9e3779b97f4a7c15ULL;
 constexpr double kTrackMarginM = 0.5;
 constexpr std::uint64_t kTrailingSensors = 0x5bd1e995a7f3c2d1ULL;  // their noise is their own
 
@@ -42,6 +43,13 @@ Simulation::Simulation(const SimulationConfig& config)
       anti_alias_(config.sensors.anti_alias_corner_hz, kStepRateHz),
       sensors_(config.sensors, sensor_seed(config)),
       history_(kHistory) {
+  if (config.incoherent_power > 0.0) {
+    for (const std::uint64_t salt : {kOwnTrackSalt, 2 * kOwnTrackSalt}) {
+      own_tracks_.emplace_back(config.track,
+                               config.truck.wheelbase_m + pivot_distance_m(config) + kTrackMarginM,
+                               config.seed + salt);
+    }
+  }
   settle_steps_ = std::llround(config.settle_s * kSampleRateHz) * kDecimation;
   const auto& skew = config.sensors.time_skew_s;
   has_skew_ = std::ranges::any_of(skew, [](double s) { return s != 0.0; });
@@ -58,6 +66,13 @@ Excitation Simulation::excitation(double position_m, const Speed& speed, bool fi
   for (std::size_t i = 0; i < 2; ++i) {
     const double place = i == 0 ? position_m : position_m - config_.truck.wheelbase_m;
     TrackPoint point = track_.at(place);
+    if (!own_tracks_.empty()) {
+      const double own = std::sqrt(config_.incoherent_power);
+      const double shared = std::sqrt(1.0 - config_.incoherent_power);
+      const TrackPoint more = own_tracks_[i].at(place);
+      point = {shared * point.slope + own * more.slope,
+               shared * point.curvature_pm + own * more.curvature_pm};
+    }
     const auto add = [&](const TrackPoint& more) {
       point.slope += more.slope;
       point.curvature_pm += more.curvature_pm;
@@ -78,6 +93,7 @@ Excitation Simulation::excitation(double position_m, const Speed& speed, bool fi
 Simulation::Excitations Simulation::excitations(double time_s, double position_m,
                                                 const Speed& speed) {
   track_.extend_to(position_m);
+  for (Track& own : own_tracks_) own.extend_to(position_m);
   Excitations result;
   result[0] = excitation(position_m, speed, true);
   if (vehicle_) result[1] = excitation(position_m - pivot_distance_m(config_), speed, false);

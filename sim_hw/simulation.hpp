@@ -27,6 +27,9 @@ struct SimulationConfig {
   SpeedConfig speed{};
   SensorConfig sensors{};
   ImpulseEffects impulses{};
+  /// Share of a wheelset's power that the other wheelset never sees: contact off the centre of the
+  /// rail, wheels that are not round.
+  double incoherent_power{0.0};
   double settle_s{10.0};  ///< runs before time 0, so that the record begins in full motion
   /// The truck as one of two under a common body; needs Vehicle::supports(truck). A flat is then
   /// on the car's first wheelset, a shock hits the instrumented truck.
@@ -82,6 +85,7 @@ class Simulation {
   SimulationConfig config_;
   std::size_t instrumented_;  // index of the truck with the sensors
   Track track_;
+  std::vector<Track> own_tracks_;  // one per wheelset, where they differ
   Truck truck_;
   std::optional<Vehicle> vehicle_;
   Shocks shocks_;

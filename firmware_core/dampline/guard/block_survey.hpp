@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/guard/lag_tracker.hpp"
+#include "dampline/guard/pair_spectra.hpp"
+#include "dampline/motion/anti_alias.hpp"
+
+namespace dampline {
+
+/// What the spectra of one block say. Powers are spectral densities, one-sided.
+struct BlockFigures {
+  std::int64_t first_tick{0};
+  std::int64_t last_tick{0};
+  int delay{0};                ///< samples by which wheelset 1 was delayed
+  double coherent_share{0.0};  ///< of the bins of 4-90 Hz: the wheelsets' coherence is above 0.4
+  double match{0.0};        ///< signed peak of the whitened correlation of the wheelsets, 1 at most
+  int match_delay{0};       ///< its place: samples by which wheelset 2 is later
+  double delay_s{0.0};      ///< of wheelset 2, where it is coherent and aligned
+  double log_gain{0.0};     ///< ln of the gain of wheelset 1 over wheelset 2, 4-90 Hz, mean of bins
+  double frame_power{0.0};  ///< power of the frame over that of a wheelset, 40-100 Hz
+  double wheelset_mps2{0.0};       ///< rms of the wheelsets, 4-90 Hz
+  std::array<double, 2> follow{};  ///< sign: the frame follows this wheelset at 1-2 Hz
+  double following{0.0};           ///< real part of the transfer from wheelsets to frame at 1-2 Hz
+  /// The frame's fast motion is coherent with the wheelsets'; then by how much it lags, more than
+  /// in the blocks before: their mean, wheelset 1, wheelset 2.
+  bool has_lag{false};
+  std::array<double, 3> lag_s{};
+  /// Share of the wheelsets' power at 45-85 Hz that they do not have in common: wheels and contact
+  /// that differ, not noise.
+  double incoherent_share{0.0};
+  std::array<double, kChannels> noise{};  ///< white part, (m/s^2)^2/Hz
+  /// What a wheelset does not share at 110-126 Hz and is not noise, (m/s^2)^2/Hz.
+  double incoherent{0.0};
+};
+
+/// Turns the sums of a block into its figures, a few bins a call.
+class BlockSurvey {
+ public:
+  BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alias) noexcept;
+
+  /// `sums` must stay as it is until done.
+  void start(const SpectrumSums& sums) noexcept;
+  [[nodiscard]] bool busy() const noexcept { return stage_ != Stage::kDone; }
+  /// A slice of the work; true when figures() has just become those of the block.
+  bool advance() noexcept;
+  [[nodiscard]] const BlockFigures& figures() const noexcept { return figures_; }
+  /// How much each bin's phase says of the delay between the wheelsets.
+  [[nodiscard]] const PairSpectra::Weights& weights() const noexcept { return weights_; }
+  /// The frame's lag is measured against what follows, not against what came before.
+  void forget_lag() noexcept {
+    for (LagTracker& lag : lags_) lag.forget();
+  }
+
+ private:
+  static constexpr std::size_t kSlice = 16;
+  enum class Stage : std::uint8_t { kDone, kPower, kLoad, kTransform, kPeak, kPhase, kReference };
+  struct Band {
+    std::size_t first, last;
+    [[nodiscard]] bool holds(std::size_t k) const noexcept { return k >= first && k <= last; }
+    [[nodiscard]] double bins() const noexcept { return static_cast<double>(last - first + 1); }
+  };
+  struct Sums {
+    double coherent{0.0};
+    double phase{0.0}, phase_weight{0.0};
+    double power1{0.0}, power2{0.0}, log_ratio{0.0};
+    double frame_fast{0.0}, wheelset_fast{0.0};
+    std::array<double, 2> follow{};
+    double follow_weight{0.0};
+    double ww{0.0}, wg{0.0}, wgg{0.0}, wy{0.0}, wgy{0.0};  // frame's noise and its aliased part
+    std::array<double, 2> fast{}, edge{};                  // of the wheelsets
+    double shared_fast{0.0}, fast_weight{0.0};
+    double middle{0.0}, shared_middle{0.0};  // of both wheelsets
+  };
+
+  void power(std::size_t k) noexcept;
+  void load(std::size_t k) noexcept;
+  void phase(std::size_t k) noexcept;
+  void learn(std::size_t k) noexcept;
+  void find_peaks() noexcept;
+  void conclude_power() noexcept;
+  void conclude_noise(double density) noexcept;
+  void conclude_lag() noexcept;
+  [[nodiscard]] LagTracker::Bin lag_bin(std::size_t which, std::size_t k) const noexcept;
+  [[nodiscard]] Band band(double low_hz, double high_hz) const noexcept;
+  [[nodiscard]] double hz(std::size_t k) const noexcept { return static_cast<double>(k) * bin_hz_; }
+
+  double rate_hz_;
+  double bin_hz_;
+  Band shared_, follow_, fast_, lag_, middle_, noise_, incoherent_, edge_;
+  std::array<double, kSpectrumBins> alias_shape_{};
+  const SpectrumSums* block_{nullptr};
+  Stage stage_{Stage::kDone};
+  std::size_t cursor_{0};
+  Sums s_{};
+  BlockFigures figures_{};
+  PairSpectra::Weights weights_{};
+  Fourier512 correlation_;
+  int round_{0};  // of two: match and mean lag, then the lags behind either wheelset
+  std::array<LagTracker, 3> lags_;
+};
+
+}  // namespace dampline

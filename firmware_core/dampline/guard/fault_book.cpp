@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/fault_book.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline {
+
+const Fault* FaultBook::find(FaultKind kind, FaultChannel channel) const noexcept {
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (faults_[i].kind == kind && faults_[i].channel == channel) return &faults_[i];
+  }
+  return nullptr;
+}
+
+bool FaultBook::has(FaultKind kind) const noexcept {
+  return std::any_of(faults_.begin(), faults_.begin() + static_cast<std::ptrdiff_t>(size_),
+                     [kind](const Fault& fault) { return fault.kind == kind; });
+}
+
+void FaultBook::report(FaultKind kind, FaultChannel channel, double time_s, double size,
+                       std::uint64_t events) noexcept {
+  const Fault* const known = find(kind, channel);
+  if (known == nullptr) {
+    faults_[size_++] = {.kind = kind,
+                        .channel = channel,
+                        .time_s = time_s,
+                        .size = size,
+                        .unit = unit_of(kind),
+                        .count = events,
+                        .last_s = time_s};
+    return;
+  }
+  Fault& fault = faults_[static_cast<std::size_t>(known - faults_.data())];
+  fault.count += events;
+  fault.last_s = std::max(fault.last_s, time_s);
+  if (kind == FaultKind::kLostSamples || kind == FaultKind::kRepeatedSamples) {
+    fault.size += size;
+  } else if (std::abs(size) > std::abs(fault.size)) {
+    fault.size = size;
+  }
+}
+
+void FaultBook::spoil(FaultKind kind, std::int64_t first_tick, std::int64_t last_tick) noexcept {
+  const std::int64_t last = second_of(last_tick);
+  const std::int64_t first =
+      std::max(second_of(std::max<std::int64_t>(first_tick, 0)), last - kSeconds + 1);
+  for (std::int64_t second = first; second <= last; ++second) {
+    Second& entry = spoilt_[slot(second)];
+    if (entry.number != second) entry = {.number = second, .kinds = 0};
+    entry.kinds |= 1U << static_cast<unsigned>(kind);
+  }
+}
+
+std::uint32_t FaultBook::spoilt(std::int64_t first_tick, std::int64_t last_tick) const noexcept {
+  std::uint32_t kinds = 0;
+  const std::int64_t last = second_of(last_tick);
+  for (std::int64_t second = std::max(second_of(first_tick), last - kSeconds + 1); second <= last;
+       ++second) {
+    const Second& entry = spoilt_[slot(std::max<std::int64_t>(second, 0))];
+    if (entry.number == second) kinds |= entry.kinds;
+  }
+  return kinds;
+}
+
+}  // namespace dampline

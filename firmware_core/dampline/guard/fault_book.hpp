@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "dampline/guard/fault.hpp"
+
+namespace dampline {
+
+/// The faults of a stream: one entry for each kind and channel, and which seconds are spoilt.
+class FaultBook {
+ public:
+  static constexpr std::size_t kMost = kFaultKinds * kFaultChannels;
+  static constexpr std::int64_t kSeconds = 4096;  ///< how far back spoilt seconds are known
+
+  explicit FaultBook(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
+
+  /// One more event. Sizes of lost and repeated samples add, of the others the largest stays.
+  void report(FaultKind kind, FaultChannel channel, double time_s, double size,
+              std::uint64_t events = 1) noexcept;
+  /// The samples of these ticks are not what the car did; both ends included.
+  void spoil(FaultKind kind, std::int64_t first_tick, std::int64_t last_tick) noexcept;
+  /// Bit k set: fault kind k spoils a second that holds one of these ticks.
+  [[nodiscard]] std::uint32_t spoilt(std::int64_t first_tick,
+                                     std::int64_t last_tick) const noexcept;
+
+  [[nodiscard]] std::span<const Fault> faults() const noexcept { return {faults_.data(), size_}; }
+  [[nodiscard]] const Fault* find(FaultKind kind, FaultChannel channel) const noexcept;
+  [[nodiscard]] bool has(FaultKind kind) const noexcept;
+  [[nodiscard]] double seconds(std::int64_t tick) const noexcept {
+    return static_cast<double>(tick) / rate_hz_;
+  }
+
+ private:
+  struct Second {
+    std::int64_t number{-1};
+    std::uint32_t kinds{0};
+  };
+  [[nodiscard]] std::int64_t second_of(std::int64_t tick) const noexcept {
+    return static_cast<std::int64_t>(static_cast<double>(tick) / rate_hz_);
+  }
+  [[nodiscard]] static std::size_t slot(std::int64_t second) noexcept {
+    return static_cast<std::size_t>(second) % static_cast<std::size_t>(kSeconds);
+  }
+
+  double rate_hz_;
+  std::array<Fault, kMost> faults_{};
+  std::size_t size_{0};
+  std::array<Second, kSeconds> spoilt_{};
+};
+
+}  // namespace dampline

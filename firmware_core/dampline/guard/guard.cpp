@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dampline {
+namespace {
+
+constexpr double kUnknownStepMps2 = 1e-4;  // codes are made of this where the step is unknown
+constexpr double kStuckS = 0.2;            // clean records hold a code for 10 samples at most
+constexpr std::int64_t kOthersMove = 8;    // codes that another channel spans meanwhile
+constexpr std::uint64_t kFewSaturated = 3;
+constexpr double kFewSpikes = 3.0;
+constexpr double kShareOfImpacts = 2.0;
+constexpr double kTallyKept = 0.98;  // a block
+constexpr double kWrongRate = 0.003;
+constexpr int kRateBlocks = 3;
+// A channel that is stuck or clips has no level of its own.
+constexpr std::uint32_t kNoLevel = 1U << static_cast<unsigned>(FaultKind::kStuckChannel) |
+                                   1U << static_cast<unsigned>(FaultKind::kClipping);
+constexpr double kMostRateHz = 2000.0;
+
+bool positive_or_unknown(double x) noexcept { return x >= 0.0 && std::isfinite(x); }
+
+std::int64_t ticks_of(double seconds, double rate_hz) noexcept {
+  return std::lround(seconds * rate_hz);
+}
+
+}  // namespace
+
+Result<GuardConfig> Guard::check(const GuardConfig& config) noexcept {
+  if (!(config.sample_rate_hz >= 50.0 && config.sample_rate_hz <= kMostRateHz)) {
+    return Errc::kInvalidConfig;
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!positive_or_unknown(config.step_mps2[c])) return Errc::kInvalidConfig;
+    if (!positive_or_unknown(config.noise_mps2[c])) return Errc::kInvalidConfig;
+  }
+  if (!positive_or_unknown(config.wheelbase_m)) return Errc::kInvalidConfig;
+  if (!positive_or_unknown(config.speed_mps)) return Errc::kInvalidConfig;
+  const AntiAliasConfig& filter = config.anti_alias;
+  if (!positive_or_unknown(filter.corner_hz) || filter.order < 1) return Errc::kInvalidConfig;
+  return config;
+}
+
+Guard::Guard(const GuardConfig& config) noexcept
+    : config_{config},
+      block_ticks_{ticks_of(kBlockS, config.sample_rate_hz)},
+      stuck_ticks_{ticks_of(kStuckS, config.sample_rate_hz)},
+      book_{config.sample_rate_hz},
+      spikes_{SpikeWatch{ticks_of(2.0, config.sample_rate_hz)},
+              SpikeWatch{ticks_of(2.0, config.sample_rate_hz)},
+              SpikeWatch{ticks_of(2.0, config.sample_rate_hz)}},
+      levels_{LevelWatch{ticks_of(1.0, config.sample_rate_hz)},
+              LevelWatch{ticks_of(1.0, config.sample_rate_hz)},
+              LevelWatch{ticks_of(1.0, config.sample_rate_hz)}},
+      spectral_{config},
+      wheelsets_{config.sample_rate_hz} {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    unit_mps2_[c] = config.step_mps2[c] > 0.0 ? config.step_mps2[c] : kUnknownStepMps2;
+  }
+}
+
+void Guard::update(const Sample& sample) noexcept {
+  if (any_ && sample.tick <= last_.tick) return;
+  Codes codes{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!(std::abs(sample.accel_mps2[c]) < 1e6)) return;  // NaN too: the screen's, not ours
+    codes[c] = std::llround(sample.accel_mps2[c] / unit(c));
+  }
+  if (!any_) {
+    block_start_ = sample.tick;
+    block_start_ns_ = sample.time_ns;
+  } else if (sample.tick != last_.tick + 1) {
+    take_gap(sample);
+  }
+  watch_codes(sample, codes);
+  spectral_.push(sample.tick, sample.accel_mps2, false);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    spectral_.set_change_scale(c, spikes_[c].scale() * unit(c));
+  }
+  spectral_.advance(book_, inputs_);
+  wheelsets_.update(sample.tick, sample.accel_mps2[1], sample.accel_mps2[2], book_);
+  spectral_.set_jump(wheelsets_.jump_tick());
+  take_strikes();
+  any_ = true;
+  last_ = sample;
+  if (sample.tick - block_start_ >= block_ticks_) close_block(sample.tick);
+}
+
+// A few missing samples are bridged, so that what lives on delays goes on.
+void Guard::take_gap(const Sample& sample) noexcept {
+  const std::int64_t missing = sample.tick - last_.tick - 1;
+  book_.report(FaultKind::kLostSamples, FaultChannel::kAll, book_.seconds(last_.tick + 1),
+               static_cast<double>(missing));
+  book_.spoil(FaultKind::kLostSamples, last_.tick, sample.tick);
+  if (missing > kBridged) {
+    restart();
+    return;
+  }
+  for (SpikeWatch& watch : spikes_) watch.restart();
+  repeats_.restart();
+  const auto length = static_cast<double>(missing + 1);
+  for (std::int64_t i = 1; i <= missing; ++i) {
+    const double u = static_cast<double>(i) / length;
+    std::array<double, kChannels> between{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      between[c] = (1.0 - u) * last_.accel_mps2[c] + u * sample.accel_mps2[c];
+    }
+    spectral_.push(last_.tick + i, between, true);
+    wheelsets_.update(last_.tick + i, between[1], between[2], book_);
+  }
+  wheelsets_.strike(sample.tick);
+}
+
+void Guard::restart() noexcept {
+  for (SpikeWatch& watch : spikes_) watch.restart();
+  for (LevelWatch& watch : levels_) watch.restart();
+  repeats_.restart();
+  spectral_.restart();
+  wheelsets_.restart();
+  runs_ = {};
+}
+
+void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
+  watch_full_scale(sample);
+  watch_runs(sample, codes);
+  if (repeats_.update(codes)) {
+    if (first_repeat_ < 0) first_repeat_ = sample.tick;
+    if (repeats_.found()) {
+      book_.report(FaultKind::kRepeatedSamples, FaultChannel::kAll, book_.seconds(first_repeat_),
+                   repeats_.excess());
+      repeats_.clear();
+      first_repeat_ = -1;
+    }
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    codes_[c].update(sample.tick, codes[c]);
+    spikes_[c].update(sample.tick, codes[c]);
+    LevelJump jump;
+    if (!levels_[c].update(sample.tick, sample.accel_mps2[c], jump)) continue;
+    if ((book_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) !=
+        0) {
+      continue;
+    }
+    book_.report(FaultKind::kDcJump, channel_of(c), book_.seconds(jump.tick), jump.size_mps2);
+    book_.spoil(FaultKind::kDcJump, jump.tick - block_ticks_ / 10, jump.tick + block_ticks_ / 10);
+  }
+}
+
+void Guard::watch_full_scale(const Sample& sample) noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if ((sample.saturated >> c & 1U) == 0) continue;
+    if (saturated_[c]++ == 0) first_saturated_[c] = sample.tick;
+    book_.spoil(FaultKind::kClipping, sample.tick, sample.tick);
+    if (saturated_[c] < kFewSaturated) continue;
+    const bool first = saturated_[c] == kFewSaturated;
+    book_.report(FaultKind::kClipping, channel_of(c),
+                 book_.seconds(first ? first_saturated_[c] : sample.tick),
+                 std::abs(sample.accel_mps2[c]), first ? kFewSaturated : 1);
+  }
+}
+
+void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    Run& run = runs_[c];
+    const std::int64_t other = codes[(c + 1) % kChannels];
+    const std::int64_t another = codes[(c + 2) % kChannels];
+    const std::int64_t sum = other + another;
+    if (run.first_tick == 0 || codes[c] != run.code) {
+      if (run.reported) {
+        book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(last_.tick),
+                     book_.seconds(last_.tick - run.first_tick + 1), 0);
+      }
+      run = {.code = codes[c], .first_tick = sample.tick, .lowest = sum, .highest = sum};
+      continue;
+    }
+    run.lowest = std::min(run.lowest, sum);
+    run.highest = std::max(run.highest, sum);
+    const bool stuck =
+        sample.tick - run.first_tick + 1 >= stuck_ticks_ && run.highest - run.lowest > kOthersMove;
+    if (!stuck) continue;
+    book_.spoil(FaultKind::kStuckChannel, run.reported ? sample.tick : run.first_tick, sample.tick);
+    if (run.reported) continue;
+    run.reported = true;
+    book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(run.first_tick), kStuckS);
+  }
+}
+
+void Guard::take_strikes() noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    Strike strike;
+    if (!spikes_[c].next(strike)) continue;
+    if (c > 0) wheelsets_.strike(strike.tick);
+    rhythm_[c].add(strike.tick);
+    SpikeTally& tally = spike_tally_[c];
+    if (!strike.digital || rhythm_[c].regular()) {
+      ++inputs_.impacts[c];
+      tally.impacts += 1.0;
+      continue;
+    }
+    tally.wrong += 1.0;
+    book_.spoil(FaultKind::kSpikes, strike.tick - 1, strike.tick + 1);
+    if (tally.count < kPending) tally.pending[tally.count++] = strike;
+  }
+}
+
+// Where many strikes are impacts, some of them are as narrow as a wrong sample.
+void Guard::judge_spikes(std::size_t channel) noexcept {
+  SpikeTally& tally = spike_tally_[channel];
+  const bool mostly_impacts = tally.wrong < kShareOfImpacts * tally.impacts;
+  if (mostly_impacts || rhythm_[channel].regular()) {
+    inputs_.impacts[channel] += tally.count;
+    tally.count = 0;
+  } else if (tally.wrong >= kFewSpikes) {
+    for (std::size_t i = 0; i < tally.count; ++i) {
+      const Strike& strike = tally.pending[i];
+      book_.report(FaultKind::kSpikes, channel_of(channel), book_.seconds(strike.tick),
+                   static_cast<double>(strike.height) * unit(channel));
+    }
+    tally.count = 0;
+  }
+  tally.impacts *= kTallyKept;
+  if (tally.wrong >= kFewSpikes) tally.wrong = std::max(tally.wrong * kTallyKept, kFewSpikes);
+}
+
+void Guard::take_code_verdict(std::size_t channel, std::int64_t tick) noexcept {
+  const CodeVerdict verdict = codes_[channel].close();
+  const double began_s = book_.seconds(block_start_);
+  if (verdict.dead_bits > 0 && config_.step_mps2[channel] > 0.0) {
+    book_.report(FaultKind::kResolutionLoss, channel_of(channel), began_s,
+                 std::ldexp(unit(channel), verdict.dead_bits));
+    book_.spoil(FaultKind::kResolutionLoss, block_start_, tick);
+  }
+  if (verdict.clips) {
+    book_.report(FaultKind::kClipping, channel_of(channel), book_.seconds(verdict.clip_first),
+                 std::abs(static_cast<double>(verdict.clip_code)) * unit(channel),
+                 static_cast<std::uint64_t>(verdict.clip_count));
+    book_.spoil(FaultKind::kClipping, block_start_, tick);
+  }
+}
+
+void Guard::close_block(std::int64_t tick) noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    take_code_verdict(c, tick);
+    judge_spikes(c);
+  }
+  repeats_.forget();
+  const bool whole = tick - block_start_ >= block_ticks_;
+  const bool sound = whole && spectral_.steady() && book_.spoilt(block_start_, tick) == 0;
+  wheelsets_.close_block(sound, tick, book_);
+  spectral_.set_difference(wheelsets_.difference_mps2());
+  if (spectral_.has_delay()) wheelsets_.set_delay(spectral_.delay_s());
+  judge_time(last_);
+  block_start_ = tick;
+  block_start_ns_ = last_.time_ns;
+}
+
+// Time that the samples carry against the rate that was declared.
+void Guard::judge_time(const Sample& sample) noexcept {
+  const double seconds = 1e-9 * static_cast<double>(sample.time_ns - block_start_ns_);
+  if (!(seconds > 0.0)) return;
+  const double rate_hz = static_cast<double>(sample.tick - block_start_) / seconds;
+  const bool wrong = std::abs(rate_hz / config_.sample_rate_hz - 1.0) > kWrongRate;
+  wrong_rate_blocks_ = wrong ? wrong_rate_blocks_ + 1 : 0;
+  if (wrong_rate_blocks_ < kRateBlocks) return;
+  book_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, book_.seconds(block_start_),
+               rate_hz);
+}
+
+void Guard::finish() noexcept {
+  if (any_ && last_.tick > block_start_) close_block(last_.tick);
+}
+
+}  // namespace dampline

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "dampline/guard/code_watch.hpp"
+#include "dampline/guard/fault_book.hpp"
+#include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/level_watch.hpp"
+#include "dampline/guard/regularity.hpp"
+#include "dampline/guard/repeat_watch.hpp"
+#include "dampline/guard/spectral_guard.hpp"
+#include "dampline/guard/spike_watch.hpp"
+#include "dampline/guard/wheelset_watch.hpp"
+#include "dampline/result.hpp"
+#include "dampline/sample/sample.hpp"
+
+namespace dampline {
+
+/// Companion of the Identifier: names what is wrong with the data themselves, so that it is never
+/// taken for a property of the suspension. The same samples in, in any order of the two; faults at
+/// any moment. Fixed size, bounded work per sample, no second pass. What needs blocks is known some
+/// 10 to 40 s after it happened.
+///
+/// Tests and thresholds are those of a study on 927 simulated records of three cars; whatever may
+/// differ between cars is measured against the record's own scatter.
+class Guard {
+ public:
+  static constexpr double kBlockS = 10.0;  ///< about; of the tests that judge codes exactly
+
+  /// kInvalidConfig when a setting is out of its range.
+  [[nodiscard]] static Result<GuardConfig> check(const GuardConfig& config) noexcept;
+  /// Precondition: check(config).ok().
+  explicit Guard(const GuardConfig& config) noexcept;
+
+  /// Ticks must increase; a sample that does not is ignored.
+  void update(const Sample& sample) noexcept;
+  /// End of the record: judges what is left of the open block.
+  void finish() noexcept;
+
+  /// One entry for each kind and channel, in the order in which they were found.
+  [[nodiscard]] std::span<const Fault> faults() const noexcept { return book_.faults(); }
+  /// Bit k set: fault kind k makes samples of these ticks useless; both ends included. Final when
+  /// the newest sample is 12 s later; of noise bursts 60 s.
+  [[nodiscard]] std::uint32_t spoilt(std::int64_t first_tick,
+                                     std::int64_t last_tick) const noexcept {
+    return book_.spoilt(first_tick, last_tick);
+  }
+  /// Impacts and changes of speed: input, not faults.
+  [[nodiscard]] const GuardInputs& inputs() const noexcept { return inputs_; }
+  /// Of the newest block of spectra that was judged.
+  [[nodiscard]] const BlockFigures& block() const noexcept { return spectral_.figures(); }
+
+ private:
+  static constexpr std::int64_t kBridged = 8;  // missing samples that a line is drawn across
+  struct Run {
+    std::int64_t code{0};
+    std::int64_t first_tick{0};
+    std::int64_t lowest{0}, highest{0};  // of the other channels during the run
+    bool reported{false};
+  };
+  static constexpr std::size_t kPending = 32;
+  struct SpikeTally {
+    std::array<Strike, kPending>
+        pending{};  // of the open block and the ones before three are there
+    std::size_t count{0};
+    double wrong{0.0};  // all so far, what is long ago counts less
+    double impacts{0.0};
+  };
+  using Codes = std::array<std::int64_t, kChannels>;
+
+  void take_gap(const Sample& sample) noexcept;
+  void restart() noexcept;
+  void watch_codes(const Sample& sample, const Codes& codes) noexcept;
+  void watch_runs(const Sample& sample, const Codes& codes) noexcept;
+  void watch_full_scale(const Sample& sample) noexcept;
+  void take_strikes() noexcept;
+  void judge_spikes(std::size_t channel) noexcept;
+  void close_block(std::int64_t tick) noexcept;
+  void judge_time(const Sample& sample) noexcept;
+  void take_code_verdict(std::size_t channel, std::int64_t tick) noexcept;
+  [[nodiscard]] double unit(std::size_t channel) const noexcept { return unit_mps2_[channel]; }
+
+  GuardConfig config_;
+  std::array<double, kChannels> unit_mps2_{};  // of a code
+  std::int64_t block_ticks_;
+  std::int64_t stuck_ticks_;
+  FaultBook book_;
+  GuardInputs inputs_{};
+  std::array<CodeWatch, kChannels> codes_{};
+  std::array<SpikeWatch, kChannels> spikes_;
+  std::array<LevelWatch, kChannels> levels_;
+  RepeatWatch repeats_;
+  SpectralGuard spectral_;
+  WheelsetWatch wheelsets_;
+  std::array<Run, kChannels> runs_{};
+  std::array<std::uint64_t, kChannels> saturated_{};
+  std::array<std::int64_t, kChannels> first_saturated_{};
+  std::array<SpikeTally, kChannels> spike_tally_{};
+  std::array<Regularity, kChannels> rhythm_{};
+  std::int64_t first_repeat_{-1};
+  bool any_{false};
+  Sample last_{};
+  std::int64_t block_start_{0};
+  std::int64_t block_start_ns_{0};
+  int wrong_rate_blocks_{0};
+};
+
+}  // namespace dampline

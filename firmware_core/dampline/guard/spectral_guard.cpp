@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/spectral_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline {
+namespace {
+
+constexpr double kMovingMps2 = 0.3;  // rms of the wheelsets below which nothing is judged
+constexpr double kMatch = 0.35;      // of the wheelsets' whitened correlation
+constexpr double kSwapped = 1.0;     // fast power of the frame over a wheelset's; clean 0.02
+constexpr int kBlocksInARow = 2;     // before a lasting fault is named
+constexpr std::uint32_t kFirstSegments = 3;  // of the block that finds the delay
+constexpr int kAligned = 2;                  // samples
+constexpr double kSteadyS = 100e-6;          // change of the delay in a block
+constexpr double kGainSignificant = 6.5;     // clean records stay below 4
+constexpr double kAtOnce = 0.6;              // of the range
+constexpr double kLeastGain = 0.012;
+constexpr std::size_t kGainBlocks = 7;
+constexpr double kWrongRate = 0.003;
+constexpr int kRateBlocks = 4;       // a timing step is named by then
+constexpr double kNoiseRatio = 3.5;  // of power, 1.9 times the declared deviation
+constexpr std::array<std::size_t, kChannels> kNoiseBlocks{3, 8, 8};  // the wheelsets' scatter more
+constexpr std::array<double, 2> kBurstRatio{3.0, 10.0};  // frame, wheelsets: they scatter more
+constexpr double kWhite = 1.4;
+// Of the wheelsets' incoherent power: it is known that well in many blocks and in one.
+constexpr double kLevelDoubt = 0.3;
+constexpr double kBurstDoubt = 1.2;
+constexpr double kLasting = 1.4;  // noise over the usual difference of the wheelsets
+constexpr std::size_t kBurstBlocks = 5;
+constexpr std::uint64_t kFewImpacts = 3;  // a block
+
+}  // namespace
+
+SpectralGuard::SpectralGuard(const GuardConfig& config) noexcept
+    : config_{config},
+      spectra_{config.sample_rate_hz},
+      survey_{config.sample_rate_hz, config.anti_alias},
+      timing_{config.sample_rate_hz} {}
+
+void SpectralGuard::restart() noexcept {
+  spectra_.restart();
+  timing_.restart();
+  survey_.forget_lag();
+  aligned_ = has_delay_ = steady_ = false;
+}
+
+void SpectralGuard::advance(FaultBook& book, GuardInputs& inputs) noexcept {
+  if (spectra_.advance()) {
+    const SpectrumSums& sums = spectra_.sums();
+    if (aligned_) {
+      timing_.add_segment(spectra_.segment().tick,
+                          static_cast<double>(sums.delay) / config_.sample_rate_hz +
+                              spectra_.segment().excess_delay_s);
+    }
+    const std::uint32_t enough = aligned_ ? PairSpectra::kSegmentsPerBlock : kFirstSegments;
+    if (sums.segments >= enough && !survey_.busy() && next_ == Test::kNone) {
+      survey_.start(spectra_.take());
+    }
+    return;
+  }
+  if (next_ != Test::kNone) {
+    judge(book, inputs);
+    return;
+  }
+  if (survey_.busy() && survey_.advance()) take_block(book);
+}
+
+void SpectralGuard::take_block(FaultBook& book) noexcept {
+  const BlockFigures& block = survey_.figures();
+  const std::uint32_t spoilt = book.spoilt(block.first_tick, block.last_tick);
+  const bool moving = block.wheelset_mps2 > kMovingMps2;
+  if (moving && spoilt == 0) next_ = Test::kOrder;
+}
+
+void SpectralGuard::judge(FaultBook& book, GuardInputs& inputs) noexcept {
+  const Test now = next_;
+  next_ = Test::kNone;
+  switch (now) {
+    case Test::kNone:
+      return;
+    case Test::kOrder:
+      count_impacts(inputs);
+      if (!in_order(book)) return;
+      align();
+      next_ = Test::kTiming;
+      return;
+    case Test::kTiming:
+      timing_.add_block(survey_.figures(), usable_);
+      timing_.judge(book, inputs);
+      next_ = Test::kGain;
+      return;
+    case Test::kGain:
+      if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(book);
+      next_ = Test::kRate;
+      return;
+    case Test::kRate:
+      if (steady_) judge_rate(book);
+      next_ = Test::kNoise;
+      return;
+    case Test::kNoise:
+      judge_noise(book);
+      next_ = Test::kBurst;
+      return;
+    case Test::kBurst:
+      judge_burst(book, 0);
+      judge_burst(book, 1);
+      return;
+  }
+}
+
+void SpectralGuard::count_impacts(const GuardInputs& inputs) noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    few_impacts_[c] = inputs.impacts[c] - impacts_before_[c] < kFewImpacts;
+    impacts_before_[c] = inputs.impacts[c];
+  }
+}
+
+// Frame and wheelset exchanged; a sensor upside down; the wheelsets exchanged.
+bool SpectralGuard::in_order(FaultBook& book) noexcept {
+  const BlockFigures& block = survey_.figures();
+  const double time_s = book.seconds(block.first_tick);
+  const auto lasting = [](int& blocks, bool now) {
+    blocks = now ? blocks + 1 : 0;
+    return blocks >= kBlocksInARow;
+  };
+  const bool swapped = block.frame_power > kSwapped;
+  if (lasting(swapped_blocks_, swapped)) {
+    book.report(FaultKind::kSwappedChannels, FaultChannel::kAll, time_s, block.frame_power);
+  }
+  if (swapped) return false;
+  const bool opposite = block.match < -kMatch;
+  const bool frame_down = !opposite && block.following < 0.0;
+  const std::array<bool, kChannels> down{frame_down, opposite && block.follow[0] < block.follow[1],
+                                         opposite && block.follow[0] >= block.follow[1]};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (lasting(inverted_blocks_[c], down[c])) {
+      book.report(FaultKind::kWrongPolarity, channel_of(c), time_s, -1.0);
+    }
+  }
+  if (opposite || frame_down) return false;
+  const int expected = config_.leading == Leading::kUnknown     ? 0
+                       : config_.leading == Leading::kWheelset1 ? 1
+                                                                : -1;
+  const bool reversed = block.match > kMatch && block.match_delay * expected < 0;
+  if (lasting(reversed_blocks_, reversed)) {
+    book.report(FaultKind::kSwappedChannels, FaultChannel::kWheelsets, time_s, block.match);
+  }
+  return true;
+}
+
+void SpectralGuard::align() noexcept {
+  const BlockFigures& block = survey_.figures();
+  const bool matches = block.match > kMatch;
+  const bool side_by_side = matches && std::abs(block.match_delay - block.delay) <= kAligned;
+  usable_ = aligned_ && side_by_side && block.coherent_share > 0.5;
+  steady_ = usable_ && has_delay_ && std::abs(block.delay_s - delay_s_) < kSteadyS;
+  if (usable_) {
+    delay_s_ = block.delay_s;
+    has_delay_ = true;
+    spectra_.set_weights(survey_.weights());
+  } else {
+    timing_.discard_segments(block.first_tick);
+  }
+  if (!matches) return;
+  aligned_ = true;
+  spectra_.set_delay(block.match_delay);
+}
+
+void SpectralGuard::judge_gain(FaultBook& book) noexcept {
+  const BlockFigures& block = survey_.figures();
+  gain_.add(block.log_gain, (block.first_tick + block.last_tick) / 2);
+  if (gain_.size() < kGainBlocks) return;
+  const BlockSeries::Step step = gain_.step();
+  if (step.significance <= kGainSignificant || std::abs(step.size) <= kLeastGain) return;
+  if (step.block + BlockSeries::kSide + 1 > gain_.size()) return;  // wait for one block more
+  const std::int64_t tick = (gain_.tick(step.block) + gain_.tick(step.block - 1)) / 2;
+  const double change = gain_.change_at(tick);
+  const bool at_once = std::abs(change) > kAtOnce * gain_.range();
+  book.report(FaultKind::kGainChange, FaultChannel::kWheelsets,
+              book.seconds(at_once ? tick : gain_.tick(0)),
+              100.0 * std::expm1(at_once ? change : gain_.change_since(gain_.tick(0))));
+  if (at_once) gain_.drop(step.block + 1);
+}
+
+void SpectralGuard::judge_rate(FaultBook& book) noexcept {
+  if (config_.wheelbase_m <= 0.0 || config_.speed_mps <= 0.0) return;
+  // Where a channel is out of step the delay says nothing of the rate.
+  for (const FaultKind kind : {FaultKind::kClockDrift, FaultKind::kTimingStep,
+                               FaultKind::kLostSamples, FaultKind::kRepeatedSamples}) {
+    for (const FaultChannel channel :
+         {FaultChannel::kWheelset1, FaultChannel::kWheelset2, FaultChannel::kWheelsets}) {
+      if (book.find(kind, channel) != nullptr) return;
+    }
+  }
+  const double delay_s = std::abs(timing_.delay_s());
+  if (delay_s == 0.0) return;
+  const double ratio = delay_s * config_.speed_mps / config_.wheelbase_m;
+  wrong_rate_blocks_ = std::abs(ratio - 1.0) > kWrongRate ? wrong_rate_blocks_ + 1 : 0;
+  if (wrong_rate_blocks_ < kRateBlocks) return;
+  book.report(FaultKind::kWrongSampleRate, FaultChannel::kAll,
+              book.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
+}
+
+double SpectralGuard::noise_limit(std::size_t channel) const noexcept {
+  const double noise = config_.noise_mps2[channel];
+  const double step = config_.step_mps2[channel];
+  return kNoiseRatio * (noise * noise + step * step / 12.0) / (0.5 * config_.sample_rate_hz);
+}
+
+void SpectralGuard::judge_noise(FaultBook& book) noexcept {
+  const BlockFigures& block = survey_.figures();
+  const std::int64_t middle = (block.first_tick + block.last_tick) / 2;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!few_impacts_[c] || (c > 0 && !steady_)) continue;
+    level_[c].add(std::max(block.noise[c] - (c > 0 ? kLevelDoubt * block.incoherent : 0.0), 0.0),
+                  middle);
+    if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
+    BlockSeries newest = level_[c];
+    newest.drop(newest.size() - std::min<std::size_t>(newest.size(), kNoiseBlocks[c] + 1));
+    if (c > 0 && book.has(FaultKind::kSoftSaturation)) continue;  // it makes overtones
+    const double noise_mps2 = std::sqrt(newest.median() * 0.5 * config_.sample_rate_hz);
+    // Second differences of white noise have the root of six times its deviation; impacts do not
+    // move their median.
+    const bool white =
+        change_mps2_[c] == 0.0 || std::sqrt(6.0) * noise_mps2 < kWhite * change_mps2_[c];
+    const bool lasting = c == 0 || noise_mps2 < kLasting * difference_mps2_;
+    if (newest.median() > noise_limit(c) && white && lasting) {
+      book.report(FaultKind::kExcessNoise, channel_of(c), book.seconds(newest.tick(0)), noise_mps2);
+    }
+  }
+  noise_[0].add(block.noise[0], middle);
+  const double both = block.noise[1] + block.noise[2] - kBurstDoubt * block.incoherent;
+  if (few_impacts_[1] && few_impacts_[2] && steady_) noise_[1].add(std::max(both, 0.0), middle);
+}
+
+void SpectralGuard::judge_burst(FaultBook& book, std::size_t which) noexcept {
+  const BlockSeries& series = noise_[which];
+  if (series.size() < kBurstBlocks) return;
+  const double declared = which == 0 ? noise_limit(0) : noise_limit(1) + noise_limit(2);
+  const double limit = std::max(kBurstRatio[which] * series.median(), declared);
+  // The newest waits: what else spoils it may not be known yet.
+  for (std::size_t i = 0; i + 1 < series.size(); ++i) {
+    if (series[i] <= limit || series.tick(i) <= burst_tick_[which]) continue;
+    burst_tick_[which] = series.tick(i);
+    const auto half = PairSpectra::kHop * std::int64_t{PairSpectra::kSegmentsPerBlock + 1} / 2;
+    if (book.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;
+    book.spoil(FaultKind::kNoiseBurst, series.tick(i) - half, series.tick(i) + half);
+    book.report(FaultKind::kNoiseBurst,
+                which == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets,
+                book.seconds(series.tick(i)), std::sqrt(series[i] * 0.5 * config_.sample_rate_hz));
+  }
+}
+
+}  // namespace dampline

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dampline/guard/block_series.hpp"
+#include "dampline/guard/block_survey.hpp"
+#include "dampline/guard/fault_book.hpp"
+#include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/pair_spectra.hpp"
+#include "dampline/guard/timing_watch.hpp"
+
+namespace dampline {
+
+/// The guards that live on wheelset 2 seeing the track that wheelset 1 saw, L/V later, and on the
+/// frame following both: by blocks of some 10 s.
+class SpectralGuard {
+ public:
+  explicit SpectralGuard(const GuardConfig& config) noexcept;
+
+  void push(std::int64_t tick, const std::array<double, kChannels>& accel_mps2,
+            bool made_up) noexcept {
+    spectra_.push(tick, accel_mps2, made_up);
+  }
+  /// A slice of the work that is due; faults go to the book. `inputs.impacts` tells impacts so far.
+  void advance(FaultBook& book, GuardInputs& inputs) noexcept;
+  /// Robust deviation of the second difference of a channel: white noise shows there, too.
+  void set_change_scale(std::size_t channel, double mps2) noexcept { change_mps2_[channel] = mps2; }
+  /// Root of the median squared difference of the wheelsets side by side: noise is in it all the
+  /// time, impacts are not.
+  void set_difference(double mps2) noexcept { difference_mps2_ = mps2; }
+  /// The wheelsets moved apart at once at this tick; -1: never.
+  void set_jump(std::int64_t tick) noexcept { timing_.set_jump(tick); }
+  /// A pause or a long gap.
+  void restart() noexcept;
+  /// True once the delay of wheelset 2 is known, in seconds.
+  [[nodiscard]] bool has_delay() const noexcept { return has_delay_; }
+  /// The delay is what it was a block before.
+  [[nodiscard]] bool steady() const noexcept { return steady_; }
+  [[nodiscard]] double delay_s() const noexcept { return delay_s_; }
+  /// Of the newest block that was judged.
+  [[nodiscard]] const BlockFigures& figures() const noexcept { return survey_.figures(); }
+
+ private:
+  enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kRate, kNoise, kBurst };
+
+  void take_block(FaultBook& book) noexcept;
+  void judge(FaultBook& book, GuardInputs& inputs) noexcept;
+  [[nodiscard]] bool in_order(FaultBook& book) noexcept;
+  void align() noexcept;
+  void judge_gain(FaultBook& book) noexcept;
+  void judge_rate(FaultBook& book) noexcept;
+  void judge_noise(FaultBook& book) noexcept;
+  void count_impacts(const GuardInputs& inputs) noexcept;
+  void judge_burst(FaultBook& book, std::size_t which) noexcept;
+  [[nodiscard]] double noise_limit(std::size_t channel) const noexcept;  // density
+
+  GuardConfig config_;
+  PairSpectra spectra_;
+  BlockSurvey survey_;
+  TimingWatch timing_;
+  BlockSeries gain_;
+  std::array<BlockSeries, 2> noise_{};  // of the frame; of both wheelsets together
+  std::array<std::int64_t, 2> burst_tick_{-1, -1};
+  std::array<BlockSeries, kChannels> level_{};
+  std::array<double, kChannels> change_mps2_{};
+  double difference_mps2_{0.0};
+  Test next_{Test::kNone};
+  bool aligned_{false};
+  bool usable_{false};  // the block's wheelsets are coherent and stand side by side
+  bool has_delay_{false};
+  bool steady_{false};
+  double delay_s_{0.0};
+  int swapped_blocks_{0};
+  int reversed_blocks_{0};
+  std::array<int, kChannels> inverted_blocks_{};
+  int wrong_rate_blocks_{0};
+  std::array<std::uint64_t, kChannels> impacts_before_{};
+  std::array<bool, kChannels> few_impacts_{};  // in this block
+};
+
+}  // namespace dampline

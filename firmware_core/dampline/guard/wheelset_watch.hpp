@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/guard/block_series.hpp"
+#include "dampline/guard/fault_book.hpp"
+#include "dampline/guard/log_histogram.hpp"
+
+namespace dampline {
+
+/// Wheelset 2 beside wheelset 1 delayed by a fraction of a sample, in the time domain.
+///
+/// Slip: where all channels lose or repeat a sample that nobody counted, the two stand one sample
+/// apart for as long as the delay lasts, and then together again.
+/// Saturation: y on x and on x^3 / s^2 - 3 x (s the rms of x); a sensor that saturates shows
+/// a cubic part of one sign when it is y and of the other when it is x; an impact on one wheelset
+/// shows in one direction only.
+class WheelsetWatch {
+ public:
+  explicit WheelsetWatch(double sample_rate_hz) noexcept;
+
+  void update(std::int64_t tick, double wheelset1_mps2, double wheelset2_mps2,
+              FaultBook& book) noexcept;
+  /// The delay of wheelset 2; takes effect with the next sample.
+  void set_delay(double delay_s) noexcept;
+  /// Block's end. `sound`: nothing spoils the block.
+  void close_block(bool sound, std::int64_t tick, FaultBook& book) noexcept;
+  /// An impact or wrong sample at this tick; may come some seconds late.
+  void strike(std::int64_t tick) noexcept;
+  void restart() noexcept;
+  /// Root of the median of the squared difference of the wheelsets, of the newest blocks.
+  [[nodiscard]] double difference_mps2() const noexcept;
+  /// Where they last moved apart by whole samples at once and stayed so; -1: never.
+  [[nodiscard]] std::int64_t jump_tick() const noexcept { return jump_tick_; }
+
+ private:
+  static constexpr std::size_t kRing = 512;
+  static constexpr int kHalf = 12;  // taps on either side
+  static constexpr std::int64_t kChunk = 8;
+  static constexpr int kReach = 4;  // samples; slips of one less are recognised
+  static constexpr std::size_t kShifts = 2 * std::size_t{kReach} + 1;
+  struct Direction {  // y on {x, c}
+    double xx{0.0}, xc{0.0}, cc{0.0}, xy{0.0}, cy{0.0};
+    void add(double x, double c, double y) noexcept;
+    void add(const Direction& other) noexcept;
+    [[nodiscard]] double cubic() const noexcept;  // coefficient of c over that of x
+  };
+  struct Slip {
+    std::int64_t tick{0};
+    int samples{0};  // lost; negative: repeated
+  };
+  void compare(std::int64_t tick) noexcept;
+  void end_chunk() noexcept;
+  void follow_slip() noexcept;
+  [[nodiscard]] bool struck(const Slip& slip, std::int64_t tick) const noexcept;
+  void report_slips(std::int64_t tick, FaultBook& book) noexcept;
+  void judge_saturation(std::int64_t tick, FaultBook& book) noexcept;
+  [[nodiscard]] static double& ring(std::array<double, kRing>& of, std::int64_t n) noexcept {
+    return of[static_cast<std::size_t>(n) % kRing];
+  }
+
+  double rate_hz_;
+  bool has_delay_{false};
+  std::int64_t whole_{0};  // samples of delay, and the taps of the fraction
+  std::array<double, 2 * std::size_t{kHalf}> taps_{};
+  std::array<double, kRing> one_{};
+  std::array<double, kRing> two_{};
+  std::array<double, kRing> delayed_{};  // wheelset 1 beside wheelset 2
+  std::int64_t count_{0};
+  std::array<double, 2> mean_{};
+  std::array<double, 2> square_{};  // smoothed x^2
+  std::int64_t chunk_samples_{0};
+  std::int64_t chunk_tick_{0};
+  std::array<double, kShifts> error_{};       // of this chunk, by shift
+  std::array<double, kShifts> last_error_{};  // of the chunk before
+  MagnitudeHistogram usual_;                  // mean squared error of chunks, in (mm/s^2)^2
+  bool apart_{false};       // the wheelsets stand some whole samples apart just now
+  bool too_long_{false};    // and longer than a slip does
+  bool whole_slip_{false};  // by whole samples exactly
+  double delay_samples_{0.0};
+  Slip now_{};
+  std::array<Slip, 8> slips_{};  // until impacts of that time are known
+  std::size_t slip_count_{0};
+  std::array<std::int64_t, 16> strikes_{};  // the newest
+  std::size_t strike_count_{0};
+  std::int64_t together_tick_{-1};
+  std::int64_t leap_tick_{-1};  // a jump, if they stay apart
+  std::int64_t jump_tick_{-1};
+  MagnitudeHistogram block_usual_;  // as usual_, of the open block
+  BlockSeries difference_;
+  std::array<Direction, 2> chunk_{};
+  std::array<Direction, 2> block_{};
+  std::array<BlockSeries, 2> cubic_{};
+};
+
+}  // namespace dampline

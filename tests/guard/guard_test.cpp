@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/guard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim_hw/effects/registry.hpp"
+#include "sim_hw/presets.hpp"
+#include "sim_hw/record_faults.hpp"
+
+namespace dampline {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsEmpty;
+
+struct Trial {
+  sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 1);
+  sim::RecordFaultConfig faults;
+  GuardConfig guard;
+  double length_s{150.0};
+};
+
+std::unique_ptr<Guard> run(const std::function<void(Trial&)>& change) {
+  Trial s;
+  s.faults.start_s = 80.0;
+  s.faults.end_s = 95.0;
+  s.faults.record_s = s.length_s;
+  s.guard.wheelbase_m = s.simulation.truck.wheelbase_m;
+  s.guard.speed_mps = s.simulation.speed.speed_mps;
+  s.guard.leading = Leading::kWheelset1;
+  s.guard.noise_mps2.fill(s.simulation.sensors.noise_mps2);
+  change(s);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    s.guard.step_mps2[c] = sim::count_scale_mps2(s.simulation.sensors.range_mps2[c]);
+  }
+  auto guard = std::make_unique<Guard>(Guard::check(s.guard).value());
+  sim::FaultyRecord record{s.simulation, s.faults};
+  const auto samples = static_cast<int>(s.length_s * sim::kSampleRateHz);
+  for (int i = 0; i < samples; ++i) guard->update(sim::to_sample(record.next()));
+  guard->finish();
+  return guard;
+}
+
+/// "name channel" of every fault.
+std::vector<std::string> names(const Guard& guard) {
+  std::vector<std::string> all;
+  for (const Fault& fault : guard.faults()) {
+    all.push_back(std::string{name_of(fault.kind)} + " " + name_of(fault.channel));
+  }
+  return all;
+}
+
+using Names = std::vector<std::string>;
+
+const Fault& only(const Guard& guard) {
+  EXPECT_EQ(guard.faults().size(), 1U) << ::testing::PrintToString(names(guard));
+  static const Fault kNone{};
+  return guard.faults().empty() ? kNone : guard.faults().front();
+}
+
+TEST(Guard, FindsNothingInCleanRecordsOfThreeCars) {
+  for (const std::uint64_t seed : {101U, 102U}) {
+    for (const auto& [load, speed] :
+         {std::pair{sim::Load::kLaden, 80.0}, std::pair{sim::Load::kLaden, 60.0},
+          std::pair{sim::Load::kEmpty, 80.0}}) {
+      const auto guard = run([&, l = load, v = speed](Trial& s) {
+        s.simulation = sim::reference_run(l, v, seed);
+        s.guard.speed_mps = v / 3.6;
+      });
+      EXPECT_THAT(names(*guard), IsEmpty());
+      EXPECT_GT(guard->block().coherent_share, 0.9);  // the tests did run
+    }
+  }
+}
+
+TEST(Guard, TakesNoEffectOfTheSuspensionForAFault) {
+  for (const char* effect : {"bump_stop", "presliding_hysteresis", "unmodelled_mode", "backlash"}) {
+    const auto guard =
+        run([&](Trial& s) { ASSERT_FALSE(sim::add_effect(s.simulation, effect, {})); });
+    EXPECT_THAT(names(*guard), IsEmpty()) << effect;
+  }
+}
+
+TEST(Guard, NamesALostSampleAndItsChannel) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto guard = run([c](Trial& s) { s.faults.lost_samples[c] = 1; });
+    const Fault& fault = only(*guard);
+    EXPECT_STREQ(name_of(fault.kind), "lost_samples");
+    EXPECT_EQ(fault.channel, channel_of(c));
+    EXPECT_EQ(fault.size, 1.0);
+    EXPECT_NEAR(fault.time_s, 80.0, 10.0);
+  }
+}
+
+TEST(Guard, MeasuresATimingStep) {
+  const auto guard = run([](Trial& s) { s.faults.delay_step_s[2] = 0.002; });
+  const Fault& fault = only(*guard);
+  EXPECT_STREQ(name_of(fault.kind), "timing_step");
+  EXPECT_EQ(fault.channel, FaultChannel::kWheelset2);
+  EXPECT_NEAR(fault.size, 0.002, 20e-6);
+}
+
+TEST(Guard, MeasuresTheDriftOfAClock) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto guard = run([c](Trial& s) { s.faults.clock_drift_ppm[c] = 50.0; });
+    const Fault& fault = only(*guard);
+    EXPECT_STREQ(name_of(fault.kind), "clock_drift");
+    EXPECT_EQ(fault.channel, channel_of(c));
+    EXPECT_NEAR(fault.size, 50.0, 5.0);
+  }
+}
+
+TEST(Guard, TellsAChangeOfSpeedFromATimingFault) {
+  const auto guard = run([](Trial& s) {
+    s.guard.speed_mps = 0.0;
+    s.simulation.speed.change_time_s = 70.0;
+    s.simulation.speed.changed_speed_mps = 1.08 * s.simulation.speed.speed_mps;
+    s.simulation.speed.ramp_mps2 = 0.1;
+  });
+  EXPECT_THAT(names(*guard), IsEmpty());
+  EXPECT_GE(guard->inputs().speed_changes, 1U);
+}
+
+TEST(Guard, MeasuresAGainStep) {
+  const auto guard = run([](Trial& s) { s.faults.gain_step[1] = 0.03; });
+  const Fault& fault = only(*guard);
+  EXPECT_STREQ(name_of(fault.kind), "gain_change");
+  EXPECT_NEAR(fault.size, 3.0, 0.5);
+}
+
+TEST(Guard, NamesWhatIsWrongWithTheCodesOfAChannel) {
+  EXPECT_THAT(names(*run([](Trial& s) { s.simulation.sensors.limit_mps2[1] = 5.0; })),
+              Contains("clipping wheelset1"));
+  EXPECT_THAT(names(*run([](Trial& s) {
+                s.simulation.sensors.stuck_start_s[2] = 60.0;
+                s.simulation.sensors.stuck_end_s[2] = 60.5;
+              })),
+              Names{"stuck_channel wheelset2"});
+  EXPECT_THAT(names(*run([](Trial& s) { s.faults.lost_bits[0] = 2; })),
+              Names{"resolution_loss frame"});
+  EXPECT_THAT(names(*run([](Trial& s) { s.faults.spikes[1] = 8; })), Names{"spikes wheelset1"});
+}
+
+TEST(Guard, MeasuresAJumpOfTheZero) {
+  const auto guard = run([](Trial& s) { s.faults.dc_jump_mps2[0] = -0.5; });
+  const Fault& fault = only(*guard);
+  EXPECT_STREQ(name_of(fault.kind), "dc_jump");
+  EXPECT_EQ(fault.channel, FaultChannel::kFrame);
+  EXPECT_NEAR(fault.size, -0.5, 0.1);
+  EXPECT_NEAR(fault.time_s, 80.0, 1.5);
+}
+
+TEST(Guard, NamesSamplesLostOrRepeatedInAllChannels) {
+  const auto slip = run([](Trial& s) { s.faults.lost_everywhere = 1; });
+  EXPECT_THAT(names(*slip), Names{"lost_samples all"});
+  EXPECT_NEAR(slip->faults().front().time_s, 80.0, 1.0);
+  const auto counted = run([](Trial& s) { s.faults.counted_lost = 7; });
+  EXPECT_THAT(names(*counted), Names{"lost_samples all"});
+  EXPECT_EQ(counted->faults().front().size, 7.0);
+  EXPECT_THAT(names(*run([](Trial& s) { s.faults.repeated_everywhere = 6; })),
+              Names{"repeated_samples all"});
+}
+
+TEST(Guard, NamesExchangedAndInvertedSensors) {
+  EXPECT_THAT(names(*run([](Trial& s) {
+                s.simulation.sensors.range_mps2.fill(98.0665);
+                s.faults.source = {1, 0, 2};
+              })),
+              Names{"swapped_channels all"});
+  EXPECT_THAT(names(*run([](Trial& s) {
+                s.faults.source = {0, 2, 1};
+              })),
+              Contains("swapped_channels wheelsets"));
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto guard = run([c](Trial& s) { s.faults.inverted[c] = true; });
+    EXPECT_THAT(names(*guard), Names{std::string{"wrong_polarity "} + name_of(channel_of(c))});
+  }
+}
+
+TEST(Guard, NamesNoiseAndItsBursts) {
+  EXPECT_THAT(names(*run([](Trial& s) { s.faults.noise_mps2[0] = 0.08; })),
+              Names{"excess_noise frame"});
+  const auto guard = run([](Trial& s) { s.faults.burst_mps2[0] = 0.3; });
+  EXPECT_THAT(names(*guard), Contains("noise_burst frame"));
+  EXPECT_NE(guard->spoilt(85 * 300, 90 * 300), 0U);
+  EXPECT_EQ(guard->spoilt(20 * 300, 50 * 300), 0U);
+}
+
+TEST(Guard, NamesASensorThatSaturates) {
+  const auto guard = run([](Trial& s) { s.faults.saturation_mps2[2] = 12.0; });
+  EXPECT_THAT(names(*guard), Contains("soft_saturation wheelset2"));
+}
+
+TEST(Guard, NamesAWrongRate) {
+  const auto guard = run([](Trial& s) { s.guard.speed_mps *= 1.015; });
+  const Fault& fault = only(*guard);
+  EXPECT_STREQ(name_of(fault.kind), "wrong_sample_rate");
+  EXPECT_NEAR(fault.size, 304.5, 0.5);
+}
+
+TEST(Guard, RefusesWhatCannotBe) {
+  GuardConfig config;
+  config.sample_rate_hz = 0.0;
+  EXPECT_FALSE(Guard::check(config).ok());
+  config = {};
+  config.step_mps2[1] = -1.0;
+  EXPECT_FALSE(Guard::check(config).ok());
+}
+
+}  // namespace
+}  // namespace dampline
