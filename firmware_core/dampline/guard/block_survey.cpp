@@ -138,11 +138,11 @@ void BlockSurvey::power(std::size_t k) noexcept {
   }
   if (middle_.holds(k)) {
     s_.middle += std::sqrt(b.delayed1[k] * b.wheelset2[k]);
-    s_.shared_middle += std::abs(b.aligned[k]);
+    s_.shared_middle += std::sqrt(std::norm(b.aligned[k]));
   }
   if (incoherent_.holds(k)) {
     const double weight = 1.0 / (std::sqrt(b.delayed1[k] * b.wheelset2[k]) + kTiny);
-    s_.shared_fast += weight * std::abs(b.aligned[k]);
+    s_.shared_fast += weight * std::sqrt(std::norm(b.aligned[k]));
     s_.fast[0] += weight * b.delayed1[k];
     s_.fast[1] += weight * b.wheelset2[k];
     s_.fast_weight += weight;

@@ -44,7 +44,7 @@ LagTracker::Complex LagTracker::whitened(std::size_t k, const Bin& bin) noexcept
   coherence_ += coherence;
   if (adopts_) return {};
   const Complex product = times(bin.cross, std::conj(reference_[k]));
-  return product * (coherence / (std::abs(product) + kTiny));
+  return product * (coherence / (std::sqrt(std::norm(product)) + kTiny));
 }
 
 void LagTracker::add_phase(std::size_t k, const Bin& bin) noexcept {
