@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/candidates.hpp"
+
+namespace dampline::effect {
+namespace {
+
+void add(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t form,
+         std::int8_t sign, const Regressor& regressor) noexcept {
+  Candidate& c = out.item[out.count++];
+  c = {.effect = effect,
+       .variant = static_cast<std::uint8_t>(variant),
+       .form = form,
+       .sign = sign,
+       .count = 1};
+  c.regressor[0] = regressor;
+}
+
+/// Two neighbours of a grid side by side: what lies between them.
+void add_pair(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t form,
+              std::int8_t sign, int column) noexcept {
+  add(out, effect, variant, form, sign, Regressor::of(column));
+  Candidate& c = out.item[out.count - 1];
+  c.regressor[c.count++] = Regressor::of(column + 1);
+}
+
+void add_damping(CandidateList& out) noexcept {
+  add(out, Effect::kViscous, 0, kPlainForm, 1, viscous_regressor());
+  add(out, Effect::kQuadraticDamping, 0, kPlainForm, 1, Regressor::of(kSpeedSquared));
+  add(out, Effect::kAsymmetricViscous, 0, kPlainForm, 0, Regressor::of(kSpeed));
+  Candidate& both = out.item[out.count - 1];
+  both.regressor[both.count++] = viscous_regressor();
+}
+
+void add_friction(CandidateList& out) noexcept {
+  add(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
+  add(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0,
+      Regressor::of(kProgressiveAbsolute));
+  for (std::size_t i = 0; i < kStribeckSpeeds; ++i) {
+    add(out, Effect::kStribeck, i, kPlainForm, 1, Regressor::of(kStribeck + at(i)));
+  }
+  for (std::size_t i = 0; i < kDahlDistances; ++i) {
+    add(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, Regressor::of(kDahl + at(i)));
+    if (i + 1 < kDahlDistances) {
+      add_pair(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, kDahl + at(i));
+    }
+  }
+  for (std::size_t i = 0; i < kBacklashGaps; ++i) {
+    add(out, Effect::kBacklash, i, kPlainForm, 1, Regressor::of(kBacklash + at(i)));
+    if (i + 1 < kBacklashGaps) {
+      add_pair(out, Effect::kBacklash, i, kPlainForm, 1, kBacklash + at(i));
+    }
+  }
+}
+
+void add_stiffness(CandidateList& out) noexcept {
+  add(out, Effect::kCubicStiffness, 0, kPlainForm, 0, Regressor::of(kCube));
+  add(out, Effect::kQuadraticStiffness, 0, kPlainForm, 0, Regressor::of(kSquare));
+  add(out, Effect::kAsymmetricStiffness, 0, kPlainForm, 0, Regressor::of(kMagnitude));
+  for (std::size_t i = 0; i < kBumpGaps; ++i) {
+    const Regressor up = Regressor::of(kBumpUp + at(i));
+    add(out, Effect::kBumpStop, i, kPlainForm, 1, up.plus(kBumpDown + at(i), -1.0));
+    add(out, Effect::kBumpStop, i, kOneSidedUp, 1, up);
+    add(out, Effect::kBumpStop, i, kOneSidedDown, 1, Regressor::of(kBumpDown + at(i), -1.0));
+  }
+}
+
+void add_modes(CandidateList& out) noexcept {
+  for (std::size_t i = 0; i < kPitchModes; ++i) {
+    add(out, Effect::kUnmodelledMode, i, kPitchForm, 1, Regressor::of(kPitchSign + at(i)));
+  }
+  for (std::size_t i = 0; i < kFlexibleModes; ++i) {
+    add(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, Regressor::of(kModeBend + at(i)));
+    if (i + 1 < kFlexibleModes) {
+      add_pair(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, kModeBend + at(i));
+    }
+  }
+}
+
+/// With x_true(t) = x(t + tau), or x_true = x (1 - e), to first order:
+///   frame:    -a = k y + F(v) + tau (a' + 2 k z_b') + ...
+///   wheelset: -a = k y + F(v) - tau (k z_i' + F'(v) z_i'')
+/// A gain of the frame's sensor stretches k and F too, so only what it does to y and v is a column.
+/// and for gains with the tangent of the friction law, since signs change where |v| is small.
+void add_sensors(const BaseForce& base, CandidateList& out) noexcept {
+  const double k = base.stiffness;
+  const double f = base.coulomb;
+  add(out, Effect::kTimeSkew, 0, kFrameForm, 0,
+      Regressor::of(kFrameRate).plus(kFrameOnce, 2.0 * k));
+  add(out, Effect::kTimeSkew, 0, kWheelset1Form, 0, Regressor::of(kWheelset1Once, -k).plus(kTangentRate1, -f));
+  add(out, Effect::kTimeSkew, 0, kWheelset2Form, 0, Regressor::of(kWheelset2Once, -k).plus(kTangentRate2, -f));
+  add(out, Effect::kGainError, 0, kFrameForm, 0,
+      Regressor::of(kFrameTwice, -2.0 * k)
+          .plus(kTangentV, -f)
+          .plus(kTangent1, -f)
+          .plus(kTangent2, -f));
+  add(out, Effect::kGainError, 0, kWheelset1Form, 0,
+      Regressor::of(kWheelset1Twice, k).plus(kTangent1, f));
+  add(out, Effect::kGainError, 0, kWheelset2Form, 0,
+      Regressor::of(kWheelset2Twice, k).plus(kTangent2, f));
+}
+
+}  // namespace
+
+const char* name_of(Effect effect) noexcept {
+  constexpr std::array<const char*, kEffects> kNames{"viscous",
+                                                     "asymmetric_viscous",
+                                                     "quadratic_damping",
+                                                     "progressive_friction",
+                                                     "stribeck",
+                                                     "presliding_hysteresis",
+                                                     "backlash",
+                                                     "bump_stop",
+                                                     "cubic_stiffness",
+                                                     "quadratic_stiffness",
+                                                     "asymmetric_stiffness",
+                                                     "unmodelled_mode",
+                                                     "time_skew",
+                                                     "gain_error",
+                                                     "impulsive_input",
+                                                     "unknown"};
+  return kNames[static_cast<std::size_t>(effect)];
+}
+
+Regressor stiffness_regressor() noexcept {
+  return Regressor::of(kFrameTwice, 2.0).plus(kWheelset1Twice, -1.0).plus(kWheelset2Twice, -1.0);
+}
+Regressor viscous_regressor() noexcept {
+  return Regressor::of(kFrameOnce, 2.0).plus(kWheelset1Once, -1.0).plus(kWheelset2Once, -1.0);
+}
+
+void list_candidates(const BaseForce& base, CandidateList& out) noexcept {
+  out.count = 0;
+  add_damping(out);
+  add_friction(out);
+  add_stiffness(out);
+  add_modes(out);
+  add_sensors(base, out);
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kStillShareLimit = 0.5;  // as the Identifier's gate
+constexpr double kStartScaleM = 1.0e-3;
+
+/// The half power of two nearest to a length, in units of a millimetre.
+double rounded_scale(double length_m) noexcept {
+  const double steps = std::round(2.0 * std::log2(std::max(length_m, 1e-9) / 1e-3));
+  return 1e-3 * std::exp2(0.5 * steps);
+}
+
+}  // namespace
+
+Diagnosis::Diagnosis(const IdentifierConfig& config, double scale_m) noexcept
+    : sample_rate_hz_{config.sample_rate_hz},
+      block_ticks_{std::lround(Identifier::kBlockS * config.sample_rate_hz)},
+      raw_{config.sample_rate_hz},
+      rows_{config.sample_rate_hz},
+      mean_{scale_m > 0.0 ? scale_m : kStartScaleM, 1.0 / config.sample_rate_hz},
+      scale_known_{scale_m > 0.0} {
+  const double step_s = 1.0 / sample_rate_hz_;
+  for (std::size_t i = 0; i < kPitchModes; ++i) {
+    pitch_[i] = Resonator{kPitch[i].frequency_hz, kPitch[i].damping_ratio, step_s};
+  }
+  for (std::size_t i = 0; i < kFlexibleModes; ++i) {
+    flexible_[i] = Resonator{kFlexibleHz[i], kFlexibleDamping, step_s};
+  }
+}
+
+void Diagnosis::update(const Sample& sample, const UpdateResult& result) noexcept {
+  raw_.push(sample);
+  store_.step();
+  if (result.has_motion) take(result.motion);
+}
+
+bool Diagnosis::learn(const Motion& motion) noexcept {
+  if (scale_known_) return true;
+  if (motion.still) return false;
+  learnt_squares_ += motion.deflection_m * motion.deflection_m;
+  if (static_cast<double>(++learnt_) < kLearningS * sample_rate_hz_) return false;
+  const double rms_m = std::sqrt(learnt_squares_ / static_cast<double>(learnt_));
+  mean_ = LawMean{rounded_scale(rms_m), 1.0 / sample_rate_hz_};
+  scale_known_ = true;
+  in_stretch_ = false;
+  return true;
+}
+
+void Diagnosis::restart(const Motion& motion) noexcept {
+  in_stretch_ = true;
+  for (Resonator& r : pitch_) r.reset();
+  for (Resonator& r : flexible_) r.reset();
+  mean_.reset(instant_of(motion));
+  first_row_tick_ = -1;
+}
+
+Instant Diagnosis::instant_of(const Motion& motion) noexcept {
+  const RawRing::Entry& now = raw_.at(motion.tick);
+  Instant out;
+  out.deflection_m = {motion.deflection_m, motion.velocity_mps};
+  out.velocity_mps = {motion.velocity_mps, motion.relative_mps2};
+  out.wheelset1_mps = {now.wheelset_mps[0], now.accel_mps2[1]};
+  out.wheelset2_mps = {now.wheelset_mps[1], now.accel_mps2[2]};
+  const RawRing::Entry& before = raw_.at(motion.tick - 1);
+  const RawRing::Entry& after = raw_.at(motion.tick + 1);
+  // A broken line through samples weakens what is fast; [-1 14 -1] / 12 undoes that.
+  const auto sharpened = [&](auto&& of) {
+    return (14.0 * of(now) - of(before) - of(after)) / 12.0;
+  };
+  const double turn = sharpened(
+      [](const RawRing::Entry& e) { return -0.5 * (e.accel_mps2[1] - e.accel_mps2[2]); });
+  for (std::size_t i = 0; i < kPitchModes; ++i) {
+    pitch_[i].update(turn);
+    out.pitch_mps[i] = {pitch_[i].rate(), pitch_[i].acceleration()};
+  }
+  const double push = sharpened([](const RawRing::Entry& e) { return -e.accel_mps2[0]; });
+  before_last_ = last_bend_;
+  for (std::size_t i = 0; i < kFlexibleModes; ++i) {
+    flexible_[i].update(push);
+    last_bend_[kModeBend + static_cast<int>(i)] = static_cast<float>(flexible_[i].bend());
+  }
+  return out;
+}
+
+void Diagnosis::take(const Motion& motion) noexcept {
+  if (!learn(motion)) return;
+  if (in_stretch_ && motion.tick != last_tick_ + 1) {
+    close_before(block_of(motion.tick));
+    in_stretch_ = false;
+  }
+  last_tick_ = motion.tick;
+  if (!any_block_) open_block_ = block_of(motion.tick);
+  any_block_ = true;
+  if (!in_stretch_) return restart(motion);
+  if (!motion.still) {
+    moving_ += 1.0;
+    velocity_squares_ += motion.velocity_mps * motion.velocity_mps;
+    deflection_squares_ += motion.deflection_m * motion.deflection_m;
+  }
+  const EffectRows::Sampled left = before_last_;
+  const EffectRows::Sampled centre = last_bend_;
+  const LawValues laws = mean_.update(instant_of(motion));
+  EffectRows::Sampled values = (left + 10.0F * centre + last_bend_) / 12.0F;
+  values.head<kLawColumnsOfEffects>() = laws;
+  if (mean_.complete()) {
+    if (first_row_tick_ < 0) first_row_tick_ = motion.tick - 1;
+    rows_.set(motion.tick - 1, values, still_);
+    build_rows(motion.tick - 1);
+  }
+  still_ = motion.still;
+}
+
+void Diagnosis::build_rows(std::int64_t newest) noexcept {
+  for (std::size_t s = 0; s < kScales; ++s) {
+    const int half = rows_.bank().half(s);
+    const std::int64_t centre = newest - half;
+    if (centre - half < first_row_tick_) continue;
+    const int stride = rows_.bank().stride(s);
+    if (centre % stride != stride / 2) continue;
+    if (rows_.still_share(s, centre) > kStillShareLimit) continue;
+    const Row row = rows_.row(s, centre, raw_);
+    store_.absorb(block_of(centre), s, row);
+    if (s == ImpulseMeter::kScale) impulses_.update(centre, row);
+  }
+  close_before(block_of(std::max<std::int64_t>(newest - rows_.bank().half(0) - 1, 0)));
+}
+
+void Diagnosis::close_before(std::int64_t block) noexcept {
+  // What was skipped by a gap has no rows.
+  open_block_ = std::max(open_block_, block - 3);
+  for (; open_block_ < block; ++open_block_) store_.close(open_block_);
+}
+
+void Diagnosis::finish() noexcept {
+  if (any_block_) close_before(block_of(last_tick_) + 1);
+  store_.finish();
+}
+
+double Diagnosis::velocity_rms_mps() const noexcept {
+  return moving_ > 0.0 ? std::sqrt(velocity_squares_ / moving_) : 0.0;
+}
+double Diagnosis::deflection_rms_m() const noexcept {
+  return moving_ > 0.0 ? std::sqrt(deflection_squares_ / moving_) : 0.0;
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dampline/effect/effect_rows.hpp"
+#include "dampline/effect/gram_store.hpp"
+#include "dampline/effect/impulse_meter.hpp"
+#include "dampline/effect/law_mean.hpp"
+#include "dampline/effect/raw_ring.hpp"
+#include "dampline/effect/resonator.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline::effect {
+
+/// The sums that judge every candidate effect, gathered beside the estimate: the Identifier's
+/// companion, fed with each sample and with what the Identifier made of it. Its size is fixed;
+/// update() costs a bounded number of operations, allocates nothing and changes nothing in the
+/// Identifier.
+class Diagnosis {
+ public:
+  /// Motion before the lengths of the candidates are fixed, s; it is not part of the sums.
+  static constexpr double kLearningS = 8.0;
+
+  /// Precondition: Identifier::check(config).ok().
+  /// `scale_m`: the deflection's size, where another record has fixed it; 0: learnt.
+  explicit Diagnosis(const IdentifierConfig& config, double scale_m = 0.0) noexcept;
+
+  void update(const Sample& sample, const UpdateResult& result) noexcept;
+  /// The end of a record: closes the open blocks.
+  void finish() noexcept;
+
+  [[nodiscard]] const ImpulseMeter& impulses() const noexcept { return impulses_; }
+  [[nodiscard]] const GramStore& store() const noexcept { return store_; }
+  /// The deflection's size: its rms over the learning time, rounded to a half power of two of a
+  /// millimetre so that records share their grids. 0 until it is known.
+  [[nodiscard]] double scale_m() const noexcept { return scale_known_ ? mean_.scale_m() : 0.0; }
+  /// Means over the moving samples.
+  [[nodiscard]] double velocity_rms_mps() const noexcept;
+  [[nodiscard]] double deflection_rms_m() const noexcept;
+
+ private:
+  void take(const Motion& motion) noexcept;
+  void restart(const Motion& motion) noexcept;
+  bool learn(const Motion& motion) noexcept;
+  [[nodiscard]] Instant instant_of(const Motion& motion) noexcept;
+  void build_rows(std::int64_t newest) noexcept;
+  void close_before(std::int64_t block) noexcept;
+  [[nodiscard]] std::int64_t block_of(std::int64_t tick) const noexcept {
+    return tick / block_ticks_;
+  }
+
+  double sample_rate_hz_;
+  std::int64_t block_ticks_;
+  RawRing raw_;
+  EffectRows rows_;
+  GramStore store_;
+  ImpulseMeter impulses_;
+  LawMean mean_;
+  std::array<Resonator, kPitchModes> pitch_;
+  std::array<Resonator, kFlexibleModes> flexible_;
+  EffectRows::Sampled last_bend_ = EffectRows::Sampled::Zero();  // of the resonators, two samples
+  EffectRows::Sampled before_last_ = EffectRows::Sampled::Zero();
+  bool still_{false};
+
+  bool scale_known_{false};
+  std::int64_t learnt_{0};
+  double learnt_squares_{0.0};
+
+  bool in_stretch_{false};
+  std::int64_t last_tick_{0};
+  std::int64_t first_row_tick_{0};  // first tick of the stretch with columns
+  bool any_block_{false};
+  std::int64_t open_block_{0};
+  double moving_{0.0};
+  double velocity_squares_{0.0};
+  double deflection_squares_{0.0};
+};
+
+}  // namespace dampline::effect

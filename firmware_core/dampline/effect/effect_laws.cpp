@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/effect_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dampline/damping/smooth_sign.hpp"
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kEngagedOver = 0.1;  // of the gap: where the force of a taken-up gap rises
+
+float single(double x) noexcept { return static_cast<float>(x); }
+
+/// exp(-x) for x >= 0 by the inverse of its series: within 2 % to x = 1.5, positive beyond.
+double decay(double x) noexcept {
+  return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x / 24.0))));
+}
+
+}  // namespace
+
+void EffectLaws::reset() noexcept {
+  any_ = false;
+  zeta_.fill(0.0);
+}
+
+void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
+  const double v = p.velocity_mps;
+  const double speed = std::abs(v);
+  for (std::size_t i = 0; i < kWidths; ++i) {
+    out[kSign + at(i)] = single(smooth_sign(v, kWidthMps[i]));
+  }
+  const double sign = smooth_sign(v, kInnerWidthMps);
+  const double x = kSignSlope * v / kInnerWidthMps;
+  // d/dv erf(0.8862 v / w) = exp(-x^2) / w
+  const double slope = x * x < 30.0 ? std::exp(-x * x) / kInnerWidthMps : 0.0;
+  out[kTangent1] = single(slope * p.wheelset1_mps);
+  out[kTangent2] = single(slope * p.wheelset2_mps);
+  out[kTangentRate1] = single(slope * p.wheelset1_mps2);
+  out[kTangentRate2] = single(slope * p.wheelset2_mps2);
+  out[kTangentV] = single(slope * v);
+  out[kProgressive] = single(p.deflection_m * sign);
+  out[kProgressiveAbsolute] = single(std::abs(p.deflection_m) * sign);
+  out[kSpeedSquared] = single(v * speed);
+  out[kSpeed] = single(speed);
+  double fading = std::exp(-speed / kStribeckMps[kStribeckSpeeds - 1]);
+  for (std::size_t i = kStribeckSpeeds; i-- > 0; fading *= fading) {
+    out[kStribeck + at(i)] = single(sign * fading);
+  }
+  for (std::size_t i = 0; i < kPitchModes; ++i) {
+    const double d = 2.0 * p.pitch_mps[i];
+    out[kPitchSign + at(i)] =
+        single(0.5 * (smooth_sign(v + d, kInnerWidthMps) + smooth_sign(v - d, kInnerWidthMps)));
+  }
+}
+
+void EffectLaws::stiffness(double y, LawValues& out) const noexcept {
+  out[kSquare] = single(y * y);
+  out[kCube] = single(y * y * y);
+  out[kMagnitude] = single(std::abs(y));
+  for (std::size_t i = 0; i < kBumpGaps; ++i) {
+    const double gap_m = kBumpGap[i] * scale_m_;
+    out[kBumpUp + at(i)] = single(std::max(y - gap_m, 0.0));
+    out[kBumpDown + at(i)] = single(std::max(-y - gap_m, 0.0));
+  }
+}
+
+void EffectLaws::memory(const Point& p, double sign, LawValues& out) noexcept {
+  const double y = p.deflection_m;
+  if (!any_) {
+    any_ = true;
+    last_deflection_m_ = y;
+    piston_m_.fill(y);
+  }
+  const double step_m = y - last_deflection_m_;
+  last_deflection_m_ = y;
+  const double towards = step_m < 0.0 ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < kDahlDistances; ++i) {
+    // d zeta / dy = (1 - zeta sign v) / r, exact over a way without reversal
+    const double kept = decay(std::abs(step_m) / (kDahlDistance[i] * scale_m_));
+    zeta_[i] = towards + (zeta_[i] - towards) * kept;
+    out[kDahl + at(i)] = single(zeta_[i]);
+  }
+  for (std::size_t i = 0; i < kBacklashGaps; ++i) {
+    const double gap_m = kBacklashGap[i] * scale_m_;
+    piston_m_[i] = std::clamp(piston_m_[i], y - 0.5 * gap_m, y + 0.5 * gap_m);
+    const double left_m = 0.5 * gap_m - towards * (y - piston_m_[i]);  // still to go to the end
+    const double engaged = std::clamp(1.0 - left_m / (kEngagedOver * gap_m), 0.0, 1.0);
+    out[kBacklash + at(i)] = single(engaged * towards * std::abs(sign));
+  }
+}
+
+LawValues EffectLaws::operator()(const Point& point) noexcept {
+  LawValues out;
+  friction(point, out);
+  stiffness(point.deflection_m, out);
+  memory(point, smooth_sign(point.velocity_mps, kInnerWidthMps), out);
+  return out;
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/Core>
+#include <array>
+
+#include "dampline/effect/columns.hpp"
+#include "dampline/effect/instant.hpp"
+
+namespace dampline::effect {
+
+/// Values of the columns that are functions of the motion; single precision, since they are
+/// projected on thousands of windows and never differenced.
+using LawValues = Eigen::Matrix<float, kLawColumnsOfEffects, 1>;
+
+/// Every candidate law as a regressor over the motion and its history. Lengths are multiples of
+/// `scale_m`, the size of the deflection.
+class EffectLaws {
+ public:
+  explicit EffectLaws(double scale_m) noexcept : scale_m_{scale_m} {}
+
+  /// The columns at a point; points come in the order of time, since some laws remember.
+  [[nodiscard]] LawValues operator()(const Point& point) noexcept;
+  /// Forgets the history.
+  void reset() noexcept;
+  [[nodiscard]] double scale_m() const noexcept { return scale_m_; }
+
+ private:
+  void friction(const Point& point, LawValues& out) const noexcept;
+  void stiffness(double deflection_m, LawValues& out) const noexcept;
+  void memory(const Point& point, double sign, LawValues& out) noexcept;
+
+  double scale_m_;
+  bool any_{false};
+  double last_deflection_m_{0.0};
+  std::array<double, kDahlDistances> zeta_{};
+  std::array<double, kBacklashGaps> piston_m_{};
+};
+
+}  // namespace dampline::effect

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/effect_rows.hpp"
+
+#include <cmath>
+
+namespace dampline::effect {
+namespace {
+
+/// Fifth derivative of (1 - u^2)^8 at u = n / reach, zero beyond the ends.
+double fifth(int n, int reach) noexcept {
+  if (n <= -reach || n >= reach) return 0.0;
+  const double u = static_cast<double>(n) / reach;
+  const double u2 = u * u;
+  const double q = 1.0 - u2;
+  const double inner = -8.0 * (1.0 - 26.0 * u2 + 65.0 * u2 * u2) + q * (-52.0 + 260.0 * u2);
+  return 672.0 * u * q * q * q * inner;
+}
+constexpr double kFourthAtZero = 672.0;
+
+}  // namespace
+
+EffectRows::EffectRows(double sample_rate_hz) noexcept : bank_{sample_rate_hz} {
+  std::size_t start = 0;
+  for (std::size_t s = 0; s < kScales; ++s) {
+    const int half = bank_.half(s);
+    const int reach = half + 1;
+    const double norm = bank_.psi(s)[static_cast<std::size_t>(half)] / kFourthAtZero;
+    const double scale = norm * sample_rate_hz / reach / 12.0;
+    rate_start_[s] = start;
+    for (int n = -reach; n <= reach; ++n) {
+      lumped_rate_[start++] =
+          scale * (fifth(n - 1, reach) + 10.0 * fifth(n, reach) + fifth(n + 1, reach));
+    }
+  }
+}
+
+void EffectRows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
+                        Row& row) const noexcept {
+  const auto psi = bank_.lumped_psi(scale);
+  const auto once = bank_.lumped_psi1(scale);
+  const auto twice = bank_.lumped_double_integral(scale);
+  const double* rate = lumped_rate_.data() + rate_start_[scale];
+  const std::int64_t first = tick - bank_.half(scale) - 1;
+  std::array<double, 8> sum{};
+  for (std::size_t i = 0; i < psi.size(); ++i) {
+    const auto& a = raw.at(first + static_cast<std::int64_t>(i)).accel_mps2;
+    sum[0] += rate[i] * a[0];
+    sum[1] += once[i] * a[0];
+    sum[2] += twice[i] * a[0];
+    sum[3] += once[i] * a[1];
+    sum[4] += twice[i] * a[1];
+    sum[5] += once[i] * a[2];
+    sum[6] += twice[i] * a[2];
+    sum[7] += psi[i] * a[0];
+  }
+  // <psi, x'> = -<psi', x>; <psi, integral of x> = -<psi1, x>, twice: <Psi, x>
+  row[kFrameRate] = -sum[0];
+  row[kFrameOnce] = -sum[1];
+  row[kFrameTwice] = sum[2];
+  row[kWheelset1Once] = -sum[3];
+  row[kWheelset1Twice] = sum[4];
+  row[kWheelset2Once] = -sum[5];
+  row[kWheelset2Twice] = sum[6];
+  row[kTarget] = -sum[7];
+}
+
+Row EffectRows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) const noexcept {
+  Sampled sum = Sampled::Zero();
+  std::size_t at = index(tick - bank_.half(scale));
+  for (const double psi : bank_.psi(scale)) {
+    sum += static_cast<float>(psi) * values_[at];
+    if (++at == kRing) at = 0;
+  }
+  Row row;
+  row.head<kSampledColumns>() = sum.cast<double>();
+  linear(scale, tick, raw, row);
+  return row;
+}
+
+double EffectRows::still_share(std::size_t scale, std::int64_t tick) const noexcept {
+  std::size_t at = index(tick - bank_.half(scale));
+  double sum = 0.0;
+  for (const double psi : bank_.psi(scale)) {
+    sum += std::abs(psi) * static_cast<double>(still_[at]);
+    if (++at == kRing) at = 0;
+  }
+  return sum / bank_.mass(scale);
+}
+
+}  // namespace dampline::effect

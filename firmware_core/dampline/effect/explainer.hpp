@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+
+#include "dampline/effect/diagnosis.hpp"
+#include "dampline/effect/explanation.hpp"
+
+namespace dampline::effect {
+
+struct ExplainerConfig {
+  double moving_mass_kg{37200.0};
+  double floor_nmse{0.0};    ///< of a complete model, from elsewhere; 0: unknown
+  bool base_viscous{false};  ///< c v belongs to the base model
+  std::array<bool, kEffects> allowed = all();  ///< candidates, by Effect
+
+  static constexpr std::array<bool, kEffects> all() noexcept {
+    std::array<bool, kEffects> out{};
+    out.fill(true);
+    return out;
+  }
+};
+
+/// Judges every candidate on the sums of a Diagnosis: forward steps until nothing passes, then a
+/// check backwards that each effect is still needed. About 1.5 MiB of workspace and some hundred
+/// small fits: place it yourself and call it as often as an answer is wanted.
+class Explainer {
+ public:
+  Explainer() noexcept : fitter_{evidence_} {}
+  Explainer(const Explainer&) = delete;
+  Explainer& operator=(const Explainer&) = delete;
+
+  [[nodiscard]] Explanation explain(const Diagnosis& diagnosis,
+                                    const ExplainerConfig& config) noexcept;
+  /// NMSE of another record's rows by models that were fitted elsewhere; 0 when it has too few.
+  /// Precondition: the other Diagnosis has the scale of the one that was explained.
+  struct Prediction {
+    double base_nmse{0.0};
+    double final_nmse{0.0};
+  };
+  [[nodiscard]] Prediction predict(const Diagnosis& other, const Explanation& by) noexcept;
+
+ private:
+  struct Best {
+    bool ok{false};
+    Candidate candidate;
+    double held_out_nmse{0.0};
+    double judged{0.0};  // with a handicap for forms that can do more
+  };
+  using BestOfEffects = std::array<Best, kEffects>;
+
+  void try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept;
+  /// Fits a model and weighs the scales by what it leaves.
+  [[nodiscard]] ModelFit settle(const GramStore& store, const Model& model) noexcept;
+  bool forward(Explanation& out, ModelFit& now) noexcept;
+  void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;
+  void backward(Explanation& out, ModelFit& now) noexcept;
+
+  Evidence evidence_;
+  ModelFitter fitter_;
+  CandidateList candidates_;
+  std::array<bool, kEffects> allowed_{};
+};
+
+}  // namespace dampline::effect

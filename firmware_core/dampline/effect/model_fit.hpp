@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "dampline/effect/candidates.hpp"
+#include "dampline/effect/evidence.hpp"
+
+namespace dampline::effect {
+
+/// Friction of one width, spring, and the effects in the model; the law's width is profiled again
+/// for every model.
+struct Model {
+  static constexpr std::size_t kMostEffects = 5;
+  std::size_t count{0};
+  std::array<Candidate, kMostEffects> effect{};
+
+  [[nodiscard]] Model with(const Candidate& candidate) const noexcept {
+    Model out = *this;
+    out.effect[out.count++] = candidate;
+    return out;
+  }
+  [[nodiscard]] Model without(std::size_t i) const noexcept {
+    Model out = *this;
+    for (; i + 1 < out.count; ++i) out.effect[i] = out.effect[i + 1];
+    --out.count;
+    return out;
+  }
+};
+
+inline constexpr int kMostTerms = 3 + 2 * static_cast<int>(Model::kMostEffects);
+
+/// Unknowns in order: friction, spring, change of friction with its width, then the effects'.
+struct ModelFit {
+  static constexpr int kCoulomb = 0;
+  static constexpr int kStiffness = 1;
+  static constexpr int kWidthChange = 2;
+  static constexpr int kFirstEffect = 3;
+  using Vector = Eigen::Matrix<double, kMostTerms, 1>;
+  using Square = Eigen::Matrix<double, kMostTerms, kMostTerms>;
+
+  bool ok{false};
+  int terms{0};
+  std::size_t width_index{0};
+  double width_mps{0.0};
+  Vector theta = Vector::Zero();
+  Square covariance = Square::Zero();  ///< from the scatter of the entries
+  double nmse{0.0};
+  double held_out_nmse{0.0};
+  std::array<double, kEffectEntries> held_out_error{};  ///< of each entry, of the total's target
+};
+
+/// Fits a model and judges it on entries that were held out, in interleaved folds; the neighbours of
+/// what is held out take no part in the fit either, since windows overlap.
+class ModelFitter {
+ public:
+  explicit ModelFitter(const Evidence& evidence) noexcept : evidence_{&evidence} {}
+  [[nodiscard]] ModelFit fit(const Model& model) noexcept;
+  /// NMSE of a model with the coefficients of another record.
+  [[nodiscard]] double nmse_of(const Model& model, const ModelFit& fit) const noexcept;
+  /// The inverse residual variance of a fit, scale by scale: the weights that belong to it.
+  [[nodiscard]] ScaleWeights weights_of(const Model& model, const ModelFit& fit) const noexcept;
+
+ private:
+  static constexpr int kMostColumns = kMostTerms + 1;
+  using Small = Eigen::Matrix<double, kMostColumns, kMostColumns>;
+  using Terms = std::array<Regressor, kMostColumns>;
+
+  /// Fills in the columns of a model with the law's width i; returns how many, the target included.
+  [[nodiscard]] static int columns(const Model& model, std::size_t i, Terms& terms) noexcept;
+  void project(const Gram& gram, const Terms& terms, int count, Small& out) const noexcept;
+  void judge(ModelFit& fit) noexcept;
+  void spread(ModelFit& fit) noexcept;
+
+  const Evidence* evidence_;
+  Small total_;
+  std::array<Small, kEffectEntries> entry_;
+};
+
+}  // namespace dampline::effect
