@@ -10,6 +10,7 @@
 #include "app/error.hpp"
 #include "app/run/run_toml.hpp"
 #include "app/verbs/config.hpp"
+#include "app/verbs/explain.hpp"
 #include "app/verbs/export.hpp"
 #include "app/verbs/identify.hpp"
 #include "app/verbs/report.hpp"
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   std::function<int()> action;
   dampline::app::add_identify_verb(program, action);
+  dampline::app::add_explain_verb(program, action);
   dampline::app::add_simulate_verb(program, action);
   dampline::app::add_report_verb(program, action);
   dampline::app::add_export_verb(program, action);

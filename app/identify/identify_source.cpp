@@ -43,13 +43,6 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, Tru
   }
 }
 
-std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
-                                      SourceKind kind) {
-  if (kind == SourceKind::kCandump) return open_can_feed(config, source);
-  if (kind == SourceKind::kBlackbox) return open_blackbox_feed(config, source);
-  return open_csv_feed(config, source);
-}
-
 Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
                           bool show_progress) {
   static_cast<void>(identifier_config(config));  // wrong settings before a wrong source
@@ -84,6 +77,13 @@ InputFile describe_record(const std::string& path) {
 }
 
 }  // namespace
+
+std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
+                                      SourceKind kind) {
+  if (kind == SourceKind::kCandump) return open_can_feed(config, source);
+  if (kind == SourceKind::kBlackbox) return open_blackbox_feed(config, source);
+  return open_csv_feed(config, source);
+}
 
 Identified identify_source(const Config& config, const SourceOptions& source, SourceKind kind,
                            bool show_progress) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct Identified {
   std::string state;  ///< for state.dls; empty for a rig
   std::vector<InputFile> inputs;
 };
+
+/// Opens a truck's record. Throws RunError.
+[[nodiscard]] std::unique_ptr<SampleFeed> open_feed(const Config& config,
+                                                    const SourceOptions& source, SourceKind kind);
 
 /// Opens a record, live interfaces excepted, and identifies it. Throws RunError or UsageError;
 /// there is no partial result.

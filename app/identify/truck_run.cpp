@@ -99,6 +99,7 @@ void TruckRun::take(const Sample& sample) {
   newest_tick_ = std::max(newest_tick_, sample.tick);
   clipping_.take(sample);
   const UpdateResult result = identifier_->update(sample);
+  if (watcher_) watcher_(sample, result);
   if (result.has_motion) excerpt_.take(result.motion);
   methods_->update(result);
   if (!result.block_closed) return;

@@ -2,8 +2,10 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "app/config/config.hpp"
 #include "app/identify/clipping_watch.hpp"
@@ -42,6 +44,9 @@ class TruckRun {
   /// `screen`: what is known of the channels; its rate is the configuration's.
   explicit TruckRun(const Config& config, const ScreenConfig& screen = {});
   void take(const Sample& sample);
+  /// Sees every sample with what the core made of it.
+  using Watcher = std::function<void(const Sample&, const UpdateResult&)>;
+  void watch(Watcher watcher) { watcher_ = std::move(watcher); }
   [[nodiscard]] bool empty() const noexcept { return !started_; }
   /// Without ending the run.
   [[nodiscard]] TruckView view() noexcept;
@@ -81,6 +86,7 @@ class TruckRun {
   MotionExcerpt excerpt_;
   ExcludedList excluded_;
   ClippingWatch clipping_;
+  Watcher watcher_;
 };
 
 }  // namespace dampline::app

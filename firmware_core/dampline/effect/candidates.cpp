@@ -33,8 +33,7 @@ void add_damping(CandidateList& out) noexcept {
 
 void add_friction(CandidateList& out) noexcept {
   add(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
-  add(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0,
-      Regressor::of(kProgressiveAbsolute));
+  add(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0, Regressor::of(kProgressiveAbsolute));
   for (std::size_t i = 0; i < kStribeckSpeeds; ++i) {
     add(out, Effect::kStribeck, i, kPlainForm, 1, Regressor::of(kStribeck + at(i)));
   }
@@ -86,8 +85,10 @@ void add_sensors(const BaseForce& base, CandidateList& out) noexcept {
   const double f = base.coulomb;
   add(out, Effect::kTimeSkew, 0, kFrameForm, 0,
       Regressor::of(kFrameRate).plus(kFrameOnce, 2.0 * k));
-  add(out, Effect::kTimeSkew, 0, kWheelset1Form, 0, Regressor::of(kWheelset1Once, -k).plus(kTangentRate1, -f));
-  add(out, Effect::kTimeSkew, 0, kWheelset2Form, 0, Regressor::of(kWheelset2Once, -k).plus(kTangentRate2, -f));
+  add(out, Effect::kTimeSkew, 0, kWheelset1Form, 0,
+      Regressor::of(kWheelset1Once, -k).plus(kTangentRate1, -f));
+  add(out, Effect::kTimeSkew, 0, kWheelset2Form, 0,
+      Regressor::of(kWheelset2Once, -k).plus(kTangentRate2, -f));
   add(out, Effect::kGainError, 0, kFrameForm, 0,
       Regressor::of(kFrameTwice, -2.0 * k)
           .plus(kTangentV, -f)

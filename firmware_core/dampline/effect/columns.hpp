@@ -52,29 +52,29 @@ inline constexpr std::array<double, kFlexibleModes> kFlexibleHz{
 /// The columns of a diagnosis row, in its order. All are forces per unit of moving mass once
 /// multiplied by their coefficient; the target is -z_b''.
 enum Column : int {
-  kSign = 0,                                        ///< smooth sign of v, one per width
-  kTangent1 = kSign + static_cast<int>(kWidths),    ///< d sign / dv times z_1'
-  kTangent2,                                        ///< ... times z_2'
-  kTangentRate1,                                    ///< ... times z_1''
-  kTangentRate2,                                    ///< ... times z_2''
-  kTangentV,                                        ///< ... times v
-  kProgressive,                                     ///< y sign v
-  kProgressiveAbsolute,                             ///< |y| sign v
-  kSpeedSquared,                                    ///< v |v|
-  kSpeed,                                           ///< |v|
-  kStribeck,                                        ///< sign v exp(-|v| / v_s)
-  kSquare = kStribeck + static_cast<int>(kStribeckSpeeds),  ///< y^2
-  kCube,                                                    ///< y^3
-  kMagnitude,                                               ///< |y|
-  kBumpUp,                                                  ///< max(y - gap, 0)
-  kBumpDown = kBumpUp + static_cast<int>(kBumpGaps),        ///< max(-y - gap, 0)
-  kDahl = kBumpDown + static_cast<int>(kBumpGaps),          ///< Dahl's zeta
-  kBacklash = kDahl + static_cast<int>(kDahlDistances),     ///< sign v once the gap is taken up
-  kPitchSign = kBacklash + static_cast<int>(kBacklashGaps),  ///< mean of both wheelsets' signs
-  kModeBend = kPitchSign + static_cast<int>(kPitchModes),  ///< force of a mass on a spring
+  kSign = 0,                                                  ///< smooth sign of v, one per width
+  kTangent1 = kSign + static_cast<int>(kWidths),              ///< d sign / dv times z_1'
+  kTangent2,                                                  ///< ... times z_2'
+  kTangentRate1,                                              ///< ... times z_1''
+  kTangentRate2,                                              ///< ... times z_2''
+  kTangentV,                                                  ///< ... times v
+  kProgressive,                                               ///< y sign v
+  kProgressiveAbsolute,                                       ///< |y| sign v
+  kSpeedSquared,                                              ///< v |v|
+  kSpeed,                                                     ///< |v|
+  kStribeck,                                                  ///< sign v exp(-|v| / v_s)
+  kSquare = kStribeck + static_cast<int>(kStribeckSpeeds),    ///< y^2
+  kCube,                                                      ///< y^3
+  kMagnitude,                                                 ///< |y|
+  kBumpUp,                                                    ///< max(y - gap, 0)
+  kBumpDown = kBumpUp + static_cast<int>(kBumpGaps),          ///< max(-y - gap, 0)
+  kDahl = kBumpDown + static_cast<int>(kBumpGaps),            ///< Dahl's zeta
+  kBacklash = kDahl + static_cast<int>(kDahlDistances),       ///< sign v once the gap is taken up
+  kPitchSign = kBacklash + static_cast<int>(kBacklashGaps),   ///< mean of both wheelsets' signs
+  kModeBend = kPitchSign + static_cast<int>(kPitchModes),     ///< force of a mass on a spring
   kFrameRate = kModeBend + static_cast<int>(kFlexibleModes),  ///< z_b'''
-  kFrameOnce,                                                  ///< z_b''' s^-2 : z_b'
-  kFrameTwice,                                                 ///< z_b
+  kFrameOnce,                                                 ///< z_b''' s^-2 : z_b'
+  kFrameTwice,                                                ///< z_b
   kWheelset1Once,
   kWheelset1Twice,
   kWheelset2Once,

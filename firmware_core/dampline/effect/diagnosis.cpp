@@ -73,8 +73,8 @@ Instant Diagnosis::instant_of(const Motion& motion) noexcept {
   const auto sharpened = [&](auto&& of) {
     return (14.0 * of(now) - of(before) - of(after)) / 12.0;
   };
-  const double turn = sharpened(
-      [](const RawRing::Entry& e) { return -0.5 * (e.accel_mps2[1] - e.accel_mps2[2]); });
+  const double turn =
+      sharpened([](const RawRing::Entry& e) { return -0.5 * (e.accel_mps2[1] - e.accel_mps2[2]); });
   for (std::size_t i = 0; i < kPitchModes; ++i) {
     pitch_[i].update(turn);
     out.pitch_mps[i] = {pitch_[i].rate(), pitch_[i].acceleration()};

@@ -61,20 +61,19 @@ class Diagnosis {
   std::array<Resonator, kFlexibleModes> flexible_;
   EffectRows::Sampled last_bend_ = EffectRows::Sampled::Zero();  // of the resonators, two samples
   EffectRows::Sampled before_last_ = EffectRows::Sampled::Zero();
-  bool still_{false};
 
-  bool scale_known_{false};
   std::int64_t learnt_{0};
   double learnt_squares_{0.0};
-
-  bool in_stretch_{false};
   std::int64_t last_tick_{0};
   std::int64_t first_row_tick_{0};  // first tick of the stretch with columns
-  bool any_block_{false};
   std::int64_t open_block_{0};
   double moving_{0.0};
   double velocity_squares_{0.0};
   double deflection_squares_{0.0};
+  bool still_{false};
+  bool scale_known_{false};
+  bool in_stretch_{false};
+  bool any_block_{false};
 };
 
 }  // namespace dampline::effect

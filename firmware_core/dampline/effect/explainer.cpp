@@ -10,19 +10,19 @@ namespace dampline::effect {
 namespace {
 
 constexpr std::size_t kFewestEntries = 10;
-constexpr double kClearGain = 0.05;    // passes on its own
-constexpr double kSmallGain = 0.025;   // passes with kSignificant
+constexpr double kClearGain = 0.05;   // passes on its own
+constexpr double kSmallGain = 0.025;  // passes with kSignificant
 constexpr double kSignificant = 2.0;
-constexpr double kLeastGain = 0.003;   // passes with kVerySignificant
+constexpr double kLeastGain = 0.003;  // passes with kVerySignificant
 constexpr double kVerySignificant = 3.3;
-constexpr double kLaterGain = 0.035;   // of a second effect
+constexpr double kLaterGain = 0.035;  // of a second effect
 constexpr double kLaterPictureGain = 0.1;
 constexpr double kLaterT = 4.0;
-constexpr double kSkewGain = 0.025;    // below, a time skew is no candidate
-constexpr double kNeeded = 0.01;       // loss without it that keeps an effect in the model
+constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
+constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
 constexpr double kSimplerWithin = 0.02;
-constexpr double kGridStd = 0.29;      // of a place known to one step: 1 / sqrt(12)
-constexpr double kRowsPerFact = 4.0;   // windows overlap
+constexpr double kGridStd = 0.29;       // of a place known to one step: 1 / sqrt(12)
+constexpr double kRowsPerFact = 4.0;    // windows overlap
 constexpr double kImpulseShare = 0.08;  // of the residual's energy in large values
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
@@ -73,7 +73,8 @@ double later_gain(const Model& model, Effect effect) noexcept {
 /// must not be the imperfections of the first.
 bool passes(const Step& step, bool first, double later) noexcept {
   if (!first) return step.gain > later && step.block_t > kLaterT;
-  if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant)) return true;
+  if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant))
+    return true;
   return step.chosen.effect != Effect::kTimeSkew && step.gain > kLeastGain &&
          step.block_t > kVerySignificant;
 }
@@ -274,10 +275,10 @@ Explanation Explainer::explain(const Diagnosis& diagnosis, const ExplainerConfig
   }
   out.floor_nmse = config.floor_nmse;
   describe(config.moving_mass_kg, diagnosis.scale_m(), out);
-  const bool near = !(config.floor_nmse > 0.0) ||
-                    out.final.held_out_nmse <= kNearFloor * config.floor_nmse;
-  const bool above = config.floor_nmse > 0.0 &&
-                     out.final.held_out_nmse > kUnexplainedAbove * config.floor_nmse;
+  const bool near =
+      !(config.floor_nmse > 0.0) || out.final.held_out_nmse <= kNearFloor * config.floor_nmse;
+  const bool above =
+      config.floor_nmse > 0.0 && out.final.held_out_nmse > kUnexplainedAbove * config.floor_nmse;
   if (out.step_count == 0) {
     out.conclusion = above ? Conclusion::kUnexplained : Conclusion::kComplete;
   } else {

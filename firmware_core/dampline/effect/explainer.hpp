@@ -9,8 +9,8 @@ namespace dampline::effect {
 
 struct ExplainerConfig {
   double moving_mass_kg{37200.0};
-  double floor_nmse{0.0};    ///< of a complete model, from elsewhere; 0: unknown
-  bool base_viscous{false};  ///< c v belongs to the base model
+  double floor_nmse{0.0};                      ///< of a complete model, from elsewhere; 0: unknown
+  bool base_viscous{false};                    ///< c v belongs to the base model
   std::array<bool, kEffects> allowed = all();  ///< candidates, by Effect
 
   static constexpr std::array<bool, kEffects> all() noexcept {

@@ -58,7 +58,8 @@ struct Explanation {
   std::size_t step_count{0};
   std::array<Step, kMostSteps> step{};
   Step rejected;  ///< the best candidate that did not pass, when there was one
-  double floor_nmse{0.0};  ///< what the sensors and the law's width leave of a complete model; 0: unknown
+  double floor_nmse{
+      0.0};  ///< what the sensors and the law's width leave of a complete model; 0: unknown
   /// Coefficients in newtons: friction and spring of base and final model.
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
 };

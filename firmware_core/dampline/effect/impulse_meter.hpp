@@ -12,7 +12,7 @@ namespace dampline::effect {
 /// ordinary size is its running median, which impacts hardly move.
 class ImpulseMeter {
  public:
-  static constexpr std::size_t kScale = 3;          ///< about 16 Hz: a window of 0.17 s
+  static constexpr std::size_t kScale = 3;           ///< about 16 Hz: a window of 0.17 s
   static constexpr double kLargeInDeviations = 6.0;  ///< of a normal residual of the same median
   static constexpr std::int64_t kApart = 45;         ///< samples between two events
 

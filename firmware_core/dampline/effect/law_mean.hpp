@@ -21,7 +21,7 @@ class LawMean {
     const LawValues p1 = laws_(quarter_(last_, instant));
     const LawValues p2 = laws_(half_(last_, instant));
     const LawValues p3 = laws_(three_quarters_(last_, instant));
-    const LawValues mean = from_left_ + (4.0F * p0 + 3.0F * p1 + 2.0F * p2 + p3) / 16.0F;
+    LawValues mean = from_left_ + (4.0F * p0 + 3.0F * p1 + 2.0F * p2 + p3) / 16.0F;
     from_left_ = (p1 + 2.0F * p2 + 3.0F * p3) / 16.0F;
     last_ = instant;
     ++count_;

@@ -165,8 +165,8 @@ void ModelFitter::judge(ModelFit& fit) noexcept {
     Small rest = Small::Zero();
     for (std::size_t e = 0; e < entries; ++e) {
       const std::size_t place = e % kFolds;
-      const bool near = place == fold || (place + 1) % kFolds == fold ||
-                        (place + kFolds - 1) % kFolds == fold;
+      const bool near =
+          place == fold || (place + 1) % kFolds == fold || (place + kFolds - 1) % kFolds == fold;
       if (!near) rest += entry_[e];
     }
     ModelFit::Vector theta;

@@ -51,8 +51,8 @@ struct ModelFit {
   std::array<double, kEffectEntries> held_out_error{};  ///< of each entry, of the total's target
 };
 
-/// Fits a model and judges it on entries that were held out, in interleaved folds; the neighbours of
-/// what is held out take no part in the fit either, since windows overlap.
+/// Fits a model and judges it on entries that were held out, in interleaved folds; the neighbours
+/// of what is held out take no part in the fit either, since windows overlap.
 class ModelFitter {
  public:
   explicit ModelFitter(const Evidence& evidence) noexcept : evidence_{&evidence} {}

@@ -35,8 +35,8 @@ void add(Step& step, const char* name, const Estimate& estimate, const char* uni
 /// A place between the points of a grid, by its logarithm.
 template <std::size_t N>
 Estimate on_grid(const std::array<double, N>& grid, const Step& step, double unit) noexcept {
-  const auto low = static_cast<std::size_t>(
-      std::clamp(step.place, 0.0, static_cast<double>(N) - 2.0));
+  const auto low =
+      static_cast<std::size_t>(std::clamp(step.place, 0.0, static_cast<double>(N) - 2.0));
   const double ratio = grid[low + 1] / grid[low];
   const double value = unit * grid[low] * std::pow(ratio, step.place - static_cast<double>(low));
   return {value, value * std::log(ratio) * step.place_std};
@@ -47,7 +47,8 @@ Estimate sum_of(const Source& s, const Step& step, double scale) noexcept {
   const Estimate first = s.coefficient(0, scale);
   if (step.chosen.count < 2) return first;
   const Estimate second = s.coefficient(1, scale);
-  const double both = 2.0 * scale * scale * s.factor * s.factor * s.fit.covariance(s.term, s.term + 1);
+  const double both =
+      2.0 * scale * scale * s.factor * s.factor * s.fit.covariance(s.term, s.term + 1);
   return {first.value + second.value,
           std::sqrt(std::max(first.std * first.std + second.std * second.std + both, 0.0))};
 }
@@ -89,7 +90,8 @@ void describe_friction(const Source& s, Step& step) noexcept {
       return add(step, "stribeck_speed", on_grid(kStribeckMps, step, 1.0), "m/s");
     case Effect::kPreslidingHysteresis:
       add(step, "presliding_hysteresis_force", sum_of(s, step, s.mass_kg), "N");
-      return add(step, "presliding_hysteresis_distance", on_grid(kDahlDistance, step, s.scale_m), "m");
+      return add(step, "presliding_hysteresis_distance", on_grid(kDahlDistance, step, s.scale_m),
+                 "m");
     case Effect::kBacklash:
       add(step, "backlash_force", sum_of(s, step, s.mass_kg), "N");
       return add(step, "backlash_gap", on_grid(kBacklashGap, step, s.scale_m), "m");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cmath>
 
 namespace dampline::effect {
@@ -50,8 +51,8 @@ class Resonator {
   double omega_{1.0};
   double damping_{0.1};
   double step_s_{1.0};
-  double from_position_[2]{};
-  double from_rate_[2]{};
+  std::array<double, 2> from_position_{};
+  std::array<double, 2> from_rate_{};
   double position_{0.0};
   double rate_{0.0};
   double input_{0.0};

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/identify/sample_feed.hpp"
+#include "app/run/checksum.hpp"
+#include "app/run/result.hpp"
+#include "dampline/effect/explanation.hpp"
+
+namespace dampline::app {
+
+/// How well a record that was never fitted is predicted, before and after.
+struct Validated {
+  std::string record;
+  double nmse_before{0.0};
+  double nmse_after{0.0};
+};
+
+/// A truck record explained.
+struct Explained {
+  effect::Explanation explanation;
+  std::vector<Validated> validation;
+  RunResult identified;  ///< what identify says of the same record
+  std::string state;     ///< for state.dls
+  std::vector<InputFile> inputs;
+};
+
+struct ExplainOptions {
+  SourceOptions source;
+  std::vector<std::string> validation;  ///< records that are never fitted
+  bool show_progress{false};
+};
+
+/// Explains a truck's record. Throws RunError or UsageError; there is no partial result.
+[[nodiscard]] Explained explain_truck(const Config& config, const ExplainOptions& options);
+
+}  // namespace dampline::app

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/explanation_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace dampline::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using effect::Explanation;
+using effect::Step;
+
+Json parameter(const char* name, const Estimate& estimate, const char* unit) {
+  return {{"name", name}, {"value", estimate.value}, {"std", estimate.std}, {"unit", unit}};
+}
+
+Json parameters_of(const Step& step) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < step.parameter_count; ++i) {
+    const effect::EffectParameter& p = step.parameter[i];
+    list.push_back(parameter(p.name, p.estimate, p.unit));
+  }
+  return list;
+}
+
+/// Base or final model.
+Json model(const Explanation& e, bool final) {
+  const effect::ModelFit& fit = final ? e.final : e.base;
+  Json list = Json::array();
+  list.push_back(parameter("coulomb", final ? e.final_coulomb_n : e.base_coulomb_n, "N"));
+  list.push_back(
+      parameter("stiffness", final ? e.final_stiffness_npm : e.base_stiffness_npm, "N/m"));
+  const std::size_t steps = final ? e.step_count : 0;
+  for (std::size_t i = 0; i < steps; ++i)
+    for (const Json& p : parameters_of(e.step[i])) list.push_back(p);
+  return {{"terms", terms_of(e, steps)},
+          {"held_out_nmse", fit.held_out_nmse},
+          {"held_out_rrse", std::sqrt(fit.held_out_nmse)},
+          {"parameters", list}};
+}
+
+Json step_json(const Explanation& e, std::size_t i) {
+  const Step& step = e.step[i];
+  Json runners_up = Json::array();
+  for (std::size_t r = 0; r < step.runner_up_count; ++r)
+    runners_up.push_back({{"effect", effect::name_of(step.runner_up[r].effect)},
+                          {"held_out_nmse", step.runner_up[r].held_out_nmse}});
+  return {{"effect", effect::name_of(step.chosen.effect)},
+          {"terms", terms_of(e, i + 1)},
+          {"held_out_nmse_before", step.held_out_nmse_before},
+          {"held_out_nmse_after", step.held_out_nmse_after},
+          {"parameters", parameters_of(step)},
+          {"evidence", {{"gain", step.gain}, {"block_t", step.block_t}}},
+          {"runners_up", runners_up}};
+}
+
+}  // namespace
+
+std::vector<std::string> terms_of(const Explanation& e, std::size_t steps) {
+  std::vector<std::string> terms{"linear spring", "coulomb"};
+  for (std::size_t i = 0; i < e.base_count; ++i)
+    terms.emplace_back(effect::name_of(e.base_model.effect[i].effect));
+  for (std::size_t i = 0; i < steps; ++i)
+    terms.emplace_back(effect::name_of(e.step[i].chosen.effect));
+  return terms;
+}
+
+std::string to_json(const Explained& explained) {
+  const Explanation& e = explained.explanation;
+  Json steps = Json::array();
+  for (std::size_t i = 0; i < e.step_count; ++i) steps.push_back(step_json(e, i));
+  Json validation = Json::array();
+  for (const Validated& v : explained.validation)
+    validation.push_back({{"record", v.record},
+                          {"rrse_before", std::sqrt(v.nmse_before)},
+                          {"rrse_after", std::sqrt(v.nmse_after)},
+                          {"nmse_before", v.nmse_before},
+                          {"nmse_after", v.nmse_after}});
+  const Json json{{"verdict", effect::name_of(e.conclusion)},
+                  {"base", model(e, false)},
+                  {"steps", steps},
+                  {"final", model(e, true)},
+                  {"floor_nmse", e.floor_nmse > 0.0 ? Json(e.floor_nmse) : Json(nullptr)},
+                  {"validation", validation},
+                  {"faults", Json::array()},
+                  {"signature", Json::object()}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace dampline::app

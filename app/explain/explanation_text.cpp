@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "app/explain/explanation_json.hpp"
+#include "app/text/quantity.hpp"
+
+namespace dampline::app {
+namespace {
+
+using effect::Explanation;
+
+std::string quantity(const Estimate& estimate, const std::string& unit) {
+  const QuantityText text = format_quantity(estimate.value, estimate.std);
+  const std::string end = unit.empty() ? "" : " " + unit;
+  return text.std.empty() ? text.value + end : text.value + " ± " + text.std + end;
+}
+
+const char* sentence(effect::Conclusion conclusion) {
+  switch (conclusion) {
+    case effect::Conclusion::kComplete:
+      return "no effect of the library improves the model";
+    case effect::Conclusion::kExplained:
+      return "the model lacked what follows";
+    case effect::Conclusion::kPartlyExplained:
+      return "the model lacked what follows, and something more";
+    case effect::Conclusion::kUnexplained:
+      return "something is left that no effect of the library explains";
+    case effect::Conclusion::kNotReady:
+      break;
+  }
+  return "too little data";
+}
+
+std::string step_text(const effect::Step& step) {
+  std::string text = fmt::format("+ {:<18} held-out error {:.4g} -> {:.4g} (nmse), t {:.1f}\n",
+                                 effect::name_of(step.chosen.effect), step.held_out_nmse_before,
+                                 step.held_out_nmse_after, step.block_t);
+  for (std::size_t i = 0; i < step.parameter_count; ++i)
+    text += fmt::format("    {:<32} {}\n", step.parameter[i].name,
+                        quantity(step.parameter[i].estimate, step.parameter[i].unit));
+  for (std::size_t i = 0; i < step.runner_up_count; ++i)
+    text += fmt::format("    {:<32} {} {:.4g}\n", i == 0 ? "next best" : "",
+                        effect::name_of(step.runner_up[i].effect), step.runner_up[i].held_out_nmse);
+  return text;
+}
+
+}  // namespace
+
+std::string summarize(const Explained& explained) {
+  const Explanation& e = explained.explanation;
+  std::string text = fmt::format("{}: {}\n", effect::name_of(e.conclusion), sentence(e.conclusion));
+  text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n", "base",
+                      e.base.held_out_nmse, quantity(e.base_coulomb_n, "N"),
+                      quantity(e.base_stiffness_npm, "N/m"));
+  for (std::size_t i = 0; i < e.step_count; ++i) text += step_text(e.step[i]);
+  if (e.step_count > 0)
+    text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n",
+                        "final", e.final.held_out_nmse, quantity(e.final_coulomb_n, "N"),
+                        quantity(e.final_stiffness_npm, "N/m"));
+  if (!(e.floor_nmse > 0.0))
+    text +=
+        "  what the sensors alone would leave is not known: whether more is left is not judged\n";
+  for (const Validated& v : explained.validation)
+    text += fmt::format("  {:<18} error {:.4g} -> {:.4g} (nmse)\n", v.record, v.nmse_before,
+                        v.nmse_after);
+  return text;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// The diagnosis on simulated trucks: effects of random kind and strength, three conditions, 300 s
+// each, as a confusion matrix and as rates. `diagnosis [PER_CELL [FIRST_SEED [STRENGTH]]]`: records
+// per kind and condition; a strength of 0 draws it from 0.3 to 1.2 of nominal.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <string>
+
+#include "bench/diagnosis_case.hpp"
+
+namespace {
+
+using namespace dampline;
+using namespace dampline::bench;
+
+struct Share {
+  int good{0};
+  int all{0};
+  void add(bool is_good) {
+    good += is_good ? 1 : 0;
+    ++all;
+  }
+  [[nodiscard]] std::string text() const {
+    return all == 0 ? "-" : fmt::format("{} of {} ({:.1f} %)", good, all, 100.0 * good / all);
+  }
+};
+
+struct Tally {
+  std::map<std::string, std::map<std::string, int>> confusion;
+  Share right, wrong, alarm, magnitude, repaired, extra;
+  std::string misses;
+
+  void add(const std::string& kind, const Condition& condition, const DiagnosedRecord& record) {
+    const effect::Explanation& e = record.explanation;
+    const std::string verdict =
+        e.step_count == 0 ? "none" : effect::name_of(e.step[0].chosen.effect);
+    ++confusion[kind][verdict];
+    if (record.planted.empty()) {
+      alarm.add(e.step_count > 0);
+      return;
+    }
+    const bool named = record.names(0, record.planted[0].effect);
+    if (!named) {
+      const effect::Step& best = e.step_count == 0 ? e.rejected : e.step[0];
+      misses += fmt::format("| {} | {} | {} | {} {:.2f} % t {:.1f} |\n", condition.name,
+                            record.planted[0].text, verdict, effect::name_of(best.chosen.effect),
+                            100.0 * best.gain, best.block_t);
+    }
+    right.add(named);
+    wrong.add(e.step_count > 0 && !named);
+    extra.add(e.step_count > 1);
+    if (named) add_sizes(record);
+  }
+
+ private:
+  void add_sizes(const DiagnosedRecord& record) {
+    const effect::Explanation& e = record.explanation;
+    const Planted& planted = record.planted[0];
+    for (std::size_t i = 0; i < e.step[0].parameter_count; ++i) {
+      const effect::EffectParameter& p = e.step[0].parameter[i];
+      if (planted.parameter == p.name)
+        magnitude.add(std::abs(p.estimate.value / planted.truth - 1.0) < 0.2);
+    }
+    const auto off = [](double value, double truth, double limit) {
+      return std::abs(value / truth - 1.0) > limit;
+    };
+    const bool base_off = off(e.base_coulomb_n.value, record.coulomb_n, 0.05) ||
+                          off(e.base_stiffness_npm.value, record.stiffness_npm, 0.05);
+    if (!base_off) return;
+    const bool good = !off(e.final_coulomb_n.value, record.coulomb_n, 0.03) &&
+                      !off(e.final_stiffness_npm.value, record.stiffness_npm, 0.03);
+    repaired.add(good);
+    if (!good)
+      misses +=
+          fmt::format("| | {} | not repaired | Fc {:+.1f} -> {:+.1f} %, k {:+.1f} -> {:+.1f} % |\n",
+                      planted.text, 100.0 * (e.base_coulomb_n.value / record.coulomb_n - 1.0),
+                      100.0 * (e.final_coulomb_n.value / record.coulomb_n - 1.0),
+                      100.0 * (e.base_stiffness_npm.value / record.stiffness_npm - 1.0),
+                      100.0 * (e.final_stiffness_npm.value / record.stiffness_npm - 1.0));
+  }
+};
+
+void print(const Tally& tally) {
+  fmt::print("| planted | named first |\n|--|--|\n");
+  for (const auto& [kind, verdicts] : tally.confusion) {
+    std::string text;
+    for (const auto& [verdict, count] : verdicts)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", verdict, count);
+    fmt::print("| {} | {} |\n", kind, text);
+  }
+  fmt::print("\n| figure | reached | wanted |\n|--|--|--|\n");
+  fmt::print("| right name | {} | 94 % (98 % at strength 1) |\n", tally.right.text());
+  fmt::print("| wrong name | {} | at most 1 % |\n", tally.wrong.text());
+  fmt::print("| false alarms on clean records | {} | at most 2 % |\n", tally.alarm.text());
+  fmt::print("| more than one effect where one was planted | {} | |\n", tally.extra.text());
+  fmt::print("| size within 20 %, of the right ones | {} | 80 % |\n", tally.magnitude.text());
+  fmt::print("| Fc and k within 3 % where the base was off by 5 % | {} | 90 % |\n",
+             tally.repaired.text());
+  fmt::print("\n| condition | planted | named | best candidate |\n|--|--|--|--|\n{}", tally.misses);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int per_cell = argc > 1 ? std::max(1, std::atoi(argv[1])) : 4;
+  std::uint64_t seed = argc > 2 ? static_cast<std::uint64_t>(std::atoll(argv[2])) : 5001;
+  const double fixed = argc > 3 ? std::atof(argv[3]) : 0.0;
+  Tally tally;
+  for (const Condition& condition : kConditions) {
+    for (int i = 0; i < 5 * per_cell; ++i)
+      tally.add("(clean)", condition, diagnose(condition, {}, seed++));
+    for (const std::string& kind : planted_kinds()) {
+      for (int i = 0; i < per_cell; ++i) {
+        sim::Random random{seed, sim::Stream::kShocks};
+        const double strength = fixed > 0.0 ? fixed : 0.3 + 0.9 * random.uniform();
+        tally.add(kind, condition, diagnose(condition, {plant(kind, strength, random)}, seed++));
+      }
+    }
+  }
+  print(tally);
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dampline/effect/explainer.hpp"
+#include "sim_hw/effects/registry.hpp"
+#include "sim_hw/presets.hpp"
+#include "sim_hw/random.hpp"
+
+namespace dampline::bench {
+
+/// The three conditions of the diagnosis tables.
+struct Condition {
+  const char* name;
+  sim::Load load;
+  double speed_kmh;
+};
+inline constexpr Condition kConditions[]{{"laden 80", sim::Load::kLaden, 80.0},
+                                         {"laden 60", sim::Load::kLaden, 60.0},
+                                         {"empty 80", sim::Load::kEmpty, 80.0}};
+
+/// An effect as it is planted: its name, what to simulate, and the parameter that tells its size,
+/// with the true value (no name: none is compared).
+struct Planted {
+  std::string effect;
+  std::string text;
+  std::string parameter;
+  double truth{0.0};
+};
+
+/// The kinds that are planted; "mode" and "pitch" are both an unmodelled mode.
+inline const std::vector<std::string>& planted_kinds() {
+  static const std::vector<std::string> kinds{"viscous",
+                                              "asymmetric_viscous",
+                                              "quadratic_damping",
+                                              "progressive_friction",
+                                              "stribeck",
+                                              "presliding_hysteresis",
+                                              "backlash",
+                                              "bump_stop",
+                                              "cubic_stiffness",
+                                              "quadratic_stiffness",
+                                              "asymmetric_stiffness",
+                                              "pitch",
+                                              "mode",
+                                              "time_skew",
+                                              "gain_error",
+                                              "impulsive_input"};
+  return kinds;
+}
+
+/// Plants one kind at a strength, 1 being nominal; channels, signs and frequencies by chance.
+inline Planted plant(const std::string& kind, double strength, sim::Random& random) {
+  const auto sign = [&] { return random.uniform() < 0.5 ? -1.0 : 1.0; };
+  const char* const channels[]{"frame", "wheelset1", "wheelset2"};
+  const char* const channel = channels[static_cast<std::size_t>(3.0 * random.uniform())];
+  if (kind == "pitch") {
+    return {"unmodelled_mode", fmt::format("unmodelled_mode:strength={}", strength), "", 0.0};
+  }
+  if (kind == "mode") {
+    const double hz = 6.0 + 10.0 * random.uniform();
+    return {"unmodelled_mode",
+            fmt::format("unmodelled_mode:pitch_inertia_kgm2=0,flexible_share={},"
+                        "flexible_frequency_hz={}",
+                        0.3 * strength, hz),
+            "unmodelled_mode_frequency", hz};
+  }
+  if (kind == "time_skew") {
+    const double s = 0.002 * strength * sign();
+    return {
+        kind,
+        fmt::format("time_skew:{}{}_s={}", channel == channels[0] ? "" : "frame_s=0,", channel, s),
+        fmt::format("time_skew_{}", channel), s};
+  }
+  if (kind == "gain_error") {
+    const double g = 0.05 * strength * sign();
+    return {
+        kind,
+        fmt::format("gain_error:{}{}={}", channel == channels[1] ? "" : "wheelset1=0,", channel, g),
+        fmt::format("gain_error_{}", channel), g};
+  }
+  return {kind, fmt::format("{}:strength={}", kind, strength), "", 0.0};
+}
+
+/// Of the effects without chance: what was planted, from the simulation's own settings.
+inline void tell_truth(const sim::SimulationConfig& c, Planted& planted) {
+  const auto& t = c.truck;
+  const std::string& e = planted.effect;
+  const auto set = [&](const char* name, double value) {
+    planted.parameter = name;
+    planted.truth = value;
+  };
+  if (e == "viscous") set("viscous", t.damping.viscous_positive_nspm);
+  if (e == "asymmetric_viscous") set("viscous_positive", t.damping.viscous_positive_nspm);
+  if (e == "quadratic_damping") set("quadratic_damping", t.damping.quadratic_ns2pm2);
+  if (e == "progressive_friction")
+    set("progressive_friction_length", t.damping.progressive_length_m);
+  if (e == "stribeck") set("stribeck_share", t.damping.stribeck_share);
+  if (e == "presliding_hysteresis")
+    set("presliding_hysteresis_distance", t.hysteresis.presliding_distance_m);
+  if (e == "backlash") set("backlash_gap", t.hysteresis.backlash_gap_m);
+  if (e == "bump_stop") set("bump_stop_gap", t.stiffness.bump_gap_m);
+  if (e == "cubic_stiffness") set("cubic_stiffness", t.stiffness.cubic_npm3);
+  if (e == "quadratic_stiffness") set("quadratic_stiffness", t.stiffness.quadratic_npm2);
+  if (e == "asymmetric_stiffness")
+    set("asymmetric_stiffness_difference", t.stiffness.asymmetry_npm);
+}
+
+/// A record of a condition with effects planted, explained.
+struct DiagnosedRecord {
+  effect::Explanation explanation;
+  std::vector<Planted> planted;
+  double coulomb_n{0.0};
+  double stiffness_npm{0.0};
+  [[nodiscard]] bool names(std::size_t step, const std::string& effect) const {
+    return step < explanation.step_count &&
+           effect::name_of(explanation.step[step].chosen.effect) == effect;
+  }
+};
+
+inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted> planted,
+                                std::uint64_t seed, double length_s = 300.0) {
+  sim::SimulationConfig config = sim::reference_run(condition.load, condition.speed_kmh, seed);
+  for (const Planted& p : planted) {
+    if (const auto wrong = sim::add_effect_text(config, p.text)) throw std::runtime_error{*wrong};
+  }
+  for (Planted& p : planted) tell_truth(config, p);
+  sim::Simulation simulation{config};
+  IdentifierConfig core;
+  core.moving_mass_kg = config.truck.moving_mass_kg;
+  const auto identifier = std::make_unique<Identifier>(core);
+  const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
+  const auto samples = static_cast<std::int64_t>(length_s * sim::kSampleRateHz);
+  for (std::int64_t n = 0; n < samples; ++n) {
+    const Sample sample = sim::to_sample(simulation.next());
+    diagnosis->update(sample, identifier->update(sample));
+  }
+  diagnosis->finish();
+  const auto explainer = std::make_unique<effect::Explainer>();
+  DiagnosedRecord out;
+  out.explanation = explainer->explain(*diagnosis, {.moving_mass_kg = core.moving_mass_kg});
+  out.planted = std::move(planted);
+  out.coulomb_n = 0.5 * (config.truck.friction_positive_n + config.truck.friction_negative_n);
+  // The estimate's k is the mean of both sides.
+  out.stiffness_npm = config.truck.stiffness_npm + 0.5 * config.truck.stiffness.asymmetry_npm;
+  return out;
+}
+
+}  // namespace dampline::bench

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/effect_laws.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kScaleM = 1.0e-3;
+
+Point moving(double deflection_m, double velocity_mps) {
+  Point p;
+  p.deflection_m = deflection_m;
+  p.velocity_mps = velocity_mps;
+  return p;
+}
+
+TEST(EffectLaws, PolynomialsAndContactsAreWhatTheyAreCalled) {
+  EffectLaws laws{kScaleM};
+  const LawValues up = laws(moving(2.5e-3, 0.05));
+  EXPECT_FLOAT_EQ(up[kSquare], 6.25e-6F);
+  EXPECT_FLOAT_EQ(up[kCube], 15.625e-9F);
+  EXPECT_FLOAT_EQ(up[kMagnitude], 2.5e-3F);
+  EXPECT_FLOAT_EQ(up[kSpeedSquared], 2.5e-3F);
+  EXPECT_FLOAT_EQ(up[kBumpUp + 2], 1.3e-3F);  // gap 1.2 mm
+  EXPECT_EQ(up[kBumpDown + 2], 0.0F);
+  const LawValues down = laws(moving(-2.5e-3, -0.05));
+  EXPECT_EQ(down[kBumpUp + 2], 0.0F);
+  EXPECT_FLOAT_EQ(down[kBumpDown + 2], 1.3e-3F);
+  EXPECT_FLOAT_EQ(down[kSpeedSquared], -2.5e-3F);
+  EXPECT_FLOAT_EQ(down[kProgressive], 2.5e-3F);           // y sign v
+  EXPECT_FLOAT_EQ(down[kProgressiveAbsolute], -2.5e-3F);  // |y| sign v
+}
+
+TEST(EffectLaws, StribeckFrictionFadesByItsSpeed) {
+  EffectLaws laws{kScaleM};
+  const LawValues out = laws(moving(0.0, 0.024));
+  for (std::size_t i = 0; i < kStribeckSpeeds; ++i)
+    EXPECT_NEAR(out[kStribeck + at(i)], std::exp(-0.024 / kStribeckMps[i]), 1e-6);
+}
+
+TEST(EffectLaws, TangentsAreTheSlopeOfTheSign) {
+  EffectLaws laws{kScaleM};
+  const int column = kSign + 3;
+  ASSERT_EQ(kWidthMps[3], kInnerWidthMps);
+  constexpr double kStepMps = 1e-4;
+  for (const double v : {0.0, 0.7e-3, -1.6e-3}) {
+    Point p = moving(0.0, v);
+    p.wheelset1_mps = 0.02;
+    p.wheelset2_mps2 = -1.5;
+    const LawValues out = laws(p);
+    const double slope = (static_cast<double>(laws(moving(0.0, v + kStepMps))[column]) -
+                          static_cast<double>(laws(moving(0.0, v - kStepMps))[column])) /
+                         (2.0 * kStepMps);
+    EXPECT_NEAR(out[kTangent1], 0.02 * slope, 0.01 * std::abs(0.02 * slope) + 1e-4);
+    EXPECT_NEAR(out[kTangentRate2], -1.5 * slope, 0.01 * std::abs(1.5 * slope) + 1e-2);
+    EXPECT_NEAR(out[kTangentV], v * slope, 0.01 * std::abs(v * slope) + 1e-4);
+  }
+}
+
+TEST(EffectLaws, DahlFrictionBuildsUpOverItsDistance) {
+  EffectLaws laws{kScaleM};
+  const double step_m = 1e-6;
+  double y = 0.0;
+  static_cast<void>(laws(moving(y, 0.01)));
+  for (int n = 0; n < 6000; ++n) static_cast<void>(laws(moving(y += step_m, 0.01)));
+  // After the reversal zeta = -1 + (zeta_0 + 1) exp(-x / r), zeta_0 of the way up.
+  LawValues out;
+  for (int n = 0; n < 200; ++n) out = laws(moving(y -= step_m, -0.01));
+  for (std::size_t i = 0; i < kDahlDistances; ++i) {
+    const double r = kDahlDistance[i] * kScaleM;
+    const double start = 1.0 - std::exp(-6.0e-3 / r);
+    EXPECT_NEAR(out[kDahl + at(i)], -1.0 + (start + 1.0) * std::exp(-0.2e-3 / r), 1e-4) << i;
+  }
+}
+
+TEST(EffectLaws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
+  EffectLaws laws{kScaleM};
+  const double gap_m = kBacklashGap[4] * kScaleM;
+  const int column = kBacklash + 4;
+  double y = 0.0;
+  LawValues out;
+  for (int n = 0; n <= 1000; ++n) out = laws(moving(y = n * 2e-6, 0.05));
+  EXPECT_FLOAT_EQ(out[column], 1.0F);
+  const double top = y;
+  for (double way = 0.05; way < 1.3; way += 0.05) {
+    out = laws(moving(top - way * gap_m, -0.05));
+    if (way < 0.89) {
+      EXPECT_EQ(out[column], 0.0F) << way;
+    } else if (way > 1.01) {
+      EXPECT_FLOAT_EQ(out[column], -1.0F) << way;
+    }
+  }
+}
+
+TEST(EffectLaws, PitchIsTheMeanOfTwoFrictions) {
+  EffectLaws laws{kScaleM};
+  Point p = moving(0.0, 0.02);
+  p.pitch_mps[0] = 0.005;  // both still slide upwards
+  p.pitch_mps[1] = 0.03;   // one slides down
+  const LawValues out = laws(p);
+  EXPECT_NEAR(out[kPitchSign], 1.0, 1e-6);
+  EXPECT_NEAR(out[kPitchSign + 1], 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace dampline::effect
