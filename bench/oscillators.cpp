@@ -11,100 +11,39 @@
 #include <string>
 #include <vector>
 
-#include "bench/oscillator_case.hpp"
+#include "app/verify/wavelet/oscillator_accuracy.hpp"
 
 namespace {
 
 using namespace dampline;
-using namespace dampline::bench;
-
-struct Seeds {
-  std::uint64_t first{2001};
-  int count{24};
-};
-
-struct Condition {
-  std::string name;
-  double frequency_hz{3.0};
-  double rms_g{0.25};
-  double factor{1.0};  ///< on the figures demanded; 0: none demanded
-  double stiffness_factor{1.0};
-  std::function<void(sim::AccelerometerRunConfig&)> change{[](auto&) {}};
-};
-
-sim::AccelerometerRunConfig make_config(const Condition& condition, System system) {
-  const double rms_mps2 = condition.rms_g * kGravityMps2;
-  sim::AccelerometerRunConfig config;
-  config.oscillator = oscillator(system, condition.frequency_hz, rms_mps2);
-  condition.change(config);
-  config.seed = 99;
-  config.base_rms_mps2 = sim::base_rms_for(config, rms_mps2);
-  return config;
-}
-
-/// Relative errors of one parameter.
-struct Errors {
-  double square{0.0};
-  double sum{0.0};
-  double sigmas_square{0.0};
-  void add(double truth, double value, double std) {
-    const double error = (value - truth) / std::abs(truth);
-    square += error * error;
-    sum += error;
-    sigmas_square += (value - truth) * (value - truth) / (std * std);
-  }
-};
+using namespace dampline::app;
 
 /// False where a figure is not reached, or a record gives no estimate.
-bool accuracy_row(const Condition& condition, System system, const Seeds& seeds) {
-  sim::AccelerometerRunConfig config = make_config(condition, system);
-  const std::vector<Truth> truth = truths(system, config.oscillator);
-  std::vector<Errors> errors(truth.size());
-  double rms = 0.0;
-  int counted = 0;
-  int blocks = 0;
-  std::int64_t excluded = 0;
-  for (int i = 0; i < seeds.count; ++i) {
-    config.seed = seeds.first + static_cast<std::uint64_t>(i);
-    const auto run = sim::run_accelerometers(config);
-    const Found found = identify_oscillator(system, run);
-    rms += run.mass_rms_mps2 / kGravityMps2 / seeds.count;
-    excluded += found.excluded;
-    if (!found.ok) continue;
-    ++counted;
-    blocks += found.blocks;
-    for (std::size_t p = 0; p < truth.size(); ++p) {
-      errors[p].add(truth[p].value, found.value[p], found.std[p]);
-    }
-  }
-  const double n = std::max(counted, 1);
-  bool reached = counted == seeds.count;
+bool accuracy_row(const OscillatorCondition& condition, System system, const Seeds& seeds) {
+  const OscillatorAccuracy found = accuracy_of(condition, system, seeds);
+  bool reached = found.estimates == seeds.count;
   std::string text;
-  for (std::size_t p = 0; p < truth.size(); ++p) {
-    const double factor = truth[p].name == "k" ? condition.stiffness_factor : condition.factor;
-    const double demanded = factor * truth[p].demanded;
-    const double error = std::sqrt(errors[p].square / n);
-    const bool missed = factor > 0.0 && error > demanded;
-    reached = reached && !missed;
-    text += fmt::format(
-        "{}{} {:.3f}{} [{:+.3f}; z {:.2f}]", p > 0 ? ", " : "", truth[p].name, 100.0 * error,
-        factor > 0.0 ? fmt::format(" <= {:.1f}{}", 100.0 * demanded, missed ? " (!)" : "") : "",
-        100.0 * errors[p].sum / n, std::sqrt(errors[p].sigmas_square / n));
+  for (const ParameterAccuracy& one : found.parameters) {
+    reached = reached && one.met();
+    text += fmt::format("{}{} {:.3f}{}{} [{:+.3f}; z {:.2f}]", text.empty() ? "" : ", ", one.name,
+                        100.0 * one.rms_error,
+                        one.demanded > 0.0 ? fmt::format(" <= {:.1f}", 100.0 * one.demanded) : "",
+                        one.met() ? "" : " (!)", 100.0 * one.mean_error, one.rms_sigmas);
   }
   fmt::print("| {} | {} | {} | {:.3f} | {} of {}, {:.1f} blocks, {} windows excluded |\n",
-             condition.name, name_of(system), text, rms, counted, seeds.count, blocks / n,
-             excluded);
+             condition.name, name_of(system), text, found.rms_g, found.estimates, seeds.count,
+             found.blocks, found.excluded);
   return reached;
 }
 
-bool accuracy_table(const std::string& title, const std::vector<Condition>& conditions,
+bool accuracy_table(const std::string& title, const std::vector<OscillatorCondition>& conditions,
                     const Seeds& seeds) {
   fmt::print(
       "\n{}\n\n| condition | system | rms error in % <= demanded [mean; rms of error / stated "
       "deviation] | rms, g | records |\n|--|--|--|--|--|\n",
       title);
   bool reached = true;
-  for (const Condition& condition : conditions) {
+  for (const OscillatorCondition& condition : conditions) {
     for (const System system : kSystems) {
       reached = accuracy_row(condition, system, seeds) && reached;
     }
@@ -122,7 +61,7 @@ std::vector<bool> present(System system) {
           system == System::kLinearCoulomb};
 }
 
-void selection_row(const Condition& condition, System system, const Seeds& seeds) {
+void selection_row(const OscillatorCondition& condition, System system, const Seeds& seeds) {
   sim::AccelerometerRunConfig config = make_config(condition, system);
   const std::vector<bool> is_true = present(system);
   double least_true = 1e300;
@@ -150,12 +89,12 @@ void selection_row(const Condition& condition, System system, const Seeds& seeds
              beyond, spurious);
 }
 
-void selection_table(const std::vector<Condition>& conditions, const Seeds& seeds) {
+void selection_table(const std::vector<OscillatorCondition>& conditions, const Seeds& seeds) {
   fmt::print(
       "\nA fit of six terms (c, k, k3, c3, F, fk) to records that contain two to four: "
       "|value / stated deviation|.\n\n| condition | system | least of true terms | largest "
       "of spurious terms | rms of spurious terms | spurious beyond 4 |\n|--|--|--|--|--|--|\n");
-  for (const Condition& condition : conditions) {
+  for (const OscillatorCondition& condition : conditions) {
     for (const System system : kSystems) selection_row(condition, system, seeds);
   }
 }
@@ -166,13 +105,9 @@ int main(int argc, char** argv) {
   Seeds seeds;
   if (argc > 1) seeds.count = std::max(1, std::atoi(argv[1]));
   if (argc > 2) seeds.first = static_cast<std::uint64_t>(std::atoll(argv[2]));
-  const bool strong_reached = accuracy_table(
-      "12 bit, 300 Hz, 50 s, base 0.5 to 30 Hz:",
-      {{.name = "3 Hz"},
-       {.name = "2 Hz", .frequency_hz = 2.0, .factor = 2.0, .stiffness_factor = 2.0},
-       {.name = "6 Hz", .frequency_hz = 6.0, .factor = 2.0, .stiffness_factor = 2.0}},
-      seeds);
-  const Condition weak{
+  const bool strong_reached =
+      accuracy_table("12 bit, 300 Hz, 50 s, base 0.5 to 30 Hz:", strong_conditions(), seeds);
+  const OscillatorCondition weak{
       .name = "3 Hz, 0.03 g", .rms_g = 0.03, .factor = 3.0, .stiffness_factor = 2.0};
   const bool weak_reached =
       accuracy_table("The same, weak or in a wider band:",

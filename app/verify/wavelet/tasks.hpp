@@ -20,7 +20,7 @@ struct GroupTask {
   std::vector<std::string> tables;
   std::function<std::vector<CheckGroup>()> run;
 };
-/// Tables 17 and 18; "step" and "precision" beside them.
+/// Tables 17 and 18; "step", "precision" and "accelerometers" beside them.
 [[nodiscard]] const std::vector<GroupTask>& group_tasks();
 
 }  // namespace dampline::app

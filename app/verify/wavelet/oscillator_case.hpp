@@ -8,19 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "dampline/damping/terms.hpp"
+#include "app/verify/wavelet/models.hpp"
 #include "dampline/oscillator/oscillator_identifier.hpp"
 #include "sim_hw/oscillator/accelerometer_run.hpp"
 
-namespace dampline::bench {
+namespace dampline::app {
 
 inline constexpr double kGravityMps2 = 9.80665;
 
-using LinearTerms = TermList<Viscous, Spring>;
-using DuffingTerms = TermList<Viscous, Spring, CubicSpring>;
-using VanDerPolTerms = TermList<Viscous, Spring, VanDerPolDamper>;
-using CoulombTerms = TermList<Viscous, Spring, Friction<>>;
-using LinearCoulombTerms = TermList<Viscous, Spring, Friction<>, ProgressiveFriction<>>;
+/// All that the oscillators below have.
 using AllTerms =
     TermList<Viscous, Spring, CubicSpring, VanDerPolDamper, Friction<>, ProgressiveFriction<>>;
 
@@ -124,11 +120,11 @@ inline Found identify_oscillator(System system, const sim::AccelerometerRun& run
     case System::kVanDerPol:
       return identify_oscillator<VanDerPolTerms>(run);
     case System::kCoulomb:
-      return identify_oscillator<CoulombTerms>(run);
+      return identify_oscillator<CoulombTerms<ExactSign>>(run);
     case System::kLinearCoulomb:
       return identify_oscillator<LinearCoulombTerms>(run);
   }
   return {};
 }
 
-}  // namespace dampline::bench
+}  // namespace dampline::app
