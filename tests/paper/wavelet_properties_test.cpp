@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "app/error.hpp"
 #include "app/verify/wavelet.hpp"
+#include "app/verify/wavelet/oscillator_accuracy.hpp"
 #include "app/verify/wavelet/properties.hpp"
 #include "app/verify/wavelet/selection.hpp"
 
@@ -30,6 +32,9 @@ void expect_selection(const std::vector<CheckGroup>& groups,
     EXPECT_LT(true_mse, true_mse_percent[i]) << groups[i].title;
     EXPECT_GT(true_mse, 0.0);
     EXPECT_GE(found(groups[i], "MSE, linear model, D8"), 100.0 * true_mse) << groups[i].title;
+    EXPECT_GE(found(groups[i], "MSE, best model without one of the true terms, D8"),
+              100.0 * true_mse)
+        << groups[i].title;
     EXPECT_GT(found(groups[i], "least |t| of a true term, D16"), 10.0) << groups[i].title;
     EXPECT_LT(found(groups[i], "largest |t| of a spurious term, D16"), 4.0) << groups[i].title;
     EXPECT_EQ(found(groups[i], "terms chosen wrongly or missed, D8"), 0.0) << groups[i].title;
@@ -43,6 +48,28 @@ TEST(Table17, TellsTrueTermsFromSpuriousOnes) {
 
 TEST(Table18, TellsTrueTermsFromSpuriousOnes) {
   expect_selection(chain_selection(), {4.8e-10, 3.6e-9, 1.1e-9});
+}
+
+TEST(TwoAccelerometers, NeedNoDeflectionAndNoForce) {
+  const auto at_two_hz = strong_conditions()[1];
+  const OscillatorAccuracy found = accuracy_of(at_two_hz, System::kDuffing, {.count = 3});
+  EXPECT_EQ(found.estimates, 3);
+  EXPECT_NEAR(found.rms_g, 0.25, 0.05);
+  const std::vector<double> demanded{0.004, 0.002, 0.006};
+  ASSERT_EQ(found.parameters.size(), demanded.size());
+  for (std::size_t i = 0; i < demanded.size(); ++i) {
+    EXPECT_NEAR(found.parameters[i].demanded, demanded[i], 1e-12) << found.parameters[i].name;
+    EXPECT_LE(found.parameters[i].rms_error, demanded[i]) << found.parameters[i].name;
+    EXPECT_GE(found.parameters[i].rms_error, std::abs(found.parameters[i].mean_error));
+  }
+}
+
+TEST(TwoAccelerometers, MissTheirFigureWhenASeedGivesNoEstimate) {
+  OscillatorCondition too_short;
+  too_short.change = [](sim::AccelerometerRunConfig& config) { config.duration_s = 10.0; };
+  const OscillatorAccuracy found = accuracy_of(too_short, System::kLinear, {.count = 1});
+  EXPECT_EQ(found.estimates, 0);
+  for (const ParameterAccuracy& one : found.parameters) EXPECT_FALSE(one.met()) << one.name;
 }
 
 TEST(StiffnessDrop, IsFoundWithinOneWindow) {
@@ -86,6 +113,26 @@ TEST(Bound, IsCountedWhereThereIsOne) {
   const Tally count = tally(figures);
   EXPECT_EQ(count.bound, 2U);
   EXPECT_EQ(count.met, 1U);
+}
+
+TEST(Bound, IsNamedWhereItIsMissed) {
+  const WaveletFigures figures{
+      .cases = {{.tables = {"5"},
+                 .title = "free",
+                 .conditions = "",
+                 .notes = {},
+                 .parameters = {{.name = "k",
+                                 .estimates = {{.method = "D8",
+                                                .error = -2.0,
+                                                .spread = 3.0,
+                                                .bound = {.error = 1.0, .spread = 4.0}},
+                                               {.method = "D12", .error = NAN}}}}}},
+      .groups = {{.tables = {"17"},
+                  .title = "forced",
+                  .checks = {{.what = "t", .found = 3.0, .at_least = 10.0},
+                             {.what = "u", .found = 30.0, .at_least = 10.0}}}}};
+  EXPECT_THAT(missed(figures), testing::ElementsAre("5, free: k by D8, error 2.0e+00 above 1.0e+00",
+                                                    "17, forced: t is 3, promised at least 10"));
 }
 
 std::string printed(const VerifyOptions& options) {

@@ -7,6 +7,8 @@
 namespace dampline::app {
 
 [[nodiscard]] CaseFigures product_result();
+/// The product x x' by equation 11.
+[[nodiscard]] CaseFigures product_by_omega_result();
 [[nodiscard]] CaseFigures duffing_result(bool forced);
 [[nodiscard]] CaseFigures van_der_pol_result(bool forced);
 [[nodiscard]] CaseFigures duffing_chain_result(bool forced);

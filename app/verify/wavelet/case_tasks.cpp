@@ -8,6 +8,7 @@ namespace dampline::app {
 const std::vector<CaseTask>& case_tasks() {
   static const std::vector<CaseTask> all{
       {{"1"}, product_result},
+      {{"1"}, product_by_omega_result},
       {{"3"}, [] { return duffing_result(true); }},
       {{"3", "4"}, [] { return van_der_pol_result(true); }},
       {{"5"}, [] { return duffing_result(false); }},

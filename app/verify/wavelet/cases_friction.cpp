@@ -126,7 +126,7 @@ PublishedCase linear_coulomb_case(double ratio, double slope_npm) {
       .notes = {"The publication's f is fk / k.",
                 "Not published, assumed: time step 0.005 s, 60 s, windows of two cycles: in one "
                 "quadrant of (x, x') x and |x| sign x' are the same but for a sign, and windows of "
-                "32 rows cannot tell them apart."},
+                "32 rows within it are left out as singular."},
       .chain = single({.k = 25, .c = 0.5L, .e = 0.2L, .fk = static_cast<Real>(slope_npm)},
                       {{1, static_cast<Real>(ratio) * 5, 0}}),
       .start = {},

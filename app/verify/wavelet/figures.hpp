@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -27,9 +28,16 @@ struct Estimate {
   std::size_t windows{0};  ///< 0: recursive, over all rows
   Bound bound{};
 
-  /// False as well for what is not a number.
-  [[nodiscard]] bool met() const noexcept {
-    return error <= bound.error && -error <= bound.error && spread <= bound.spread;
+  /// False as well where what is bound is not a number.
+  [[nodiscard]] bool error_met() const noexcept {
+    return !std::isfinite(bound.error) || std::abs(error) <= bound.error;
+  }
+  [[nodiscard]] bool spread_met() const noexcept {
+    return !std::isfinite(bound.spread) || spread <= bound.spread;
+  }
+  [[nodiscard]] bool met() const noexcept { return error_met() && spread_met(); }
+  [[nodiscard]] bool is_bound() const noexcept {
+    return std::isfinite(bound.error) || std::isfinite(bound.spread);
   }
 };
 
@@ -49,6 +57,7 @@ struct CaseFigures {
   std::string title{};
   std::string conditions;
   std::vector<std::string> notes;  ///< misprints repaired, what was assumed
+  bool own_methods{false};         ///< estimates by other methods than those of recompute()
   double step_s{0.0};
   std::size_t samples{0};
   std::vector<ParameterFigures> parameters;
@@ -66,6 +75,7 @@ struct Check {
   [[nodiscard]] bool met() const noexcept {
     return (!at_most || found <= *at_most) && (!at_least || found >= *at_least) && found == found;
   }
+  [[nodiscard]] bool is_bound() const noexcept { return at_most || at_least; }
 };
 
 /// Figures that belong together, of a table or of a property of the method.
@@ -87,5 +97,7 @@ struct Tally {
   std::size_t met{0};
 };
 [[nodiscard]] Tally tally(const WaveletFigures& figures);
+/// One line for each figure that misses its bound: where, what was found, what was promised.
+[[nodiscard]] std::vector<std::string> missed(const WaveletFigures& figures);
 
 }  // namespace dampline::app

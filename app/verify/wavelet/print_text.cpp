@@ -20,16 +20,22 @@ std::string bound_text(double bound) {
   return std::isfinite(bound) ? fmt::format("{:.1e}", bound) : "-";
 }
 
-std::string verdict(const Bound& bound, bool met) {
-  if (!met) return "MISSED";
-  return std::isfinite(bound.error) || std::isfinite(bound.spread) ? "met" : "-";
+template <class Figure>
+const char* verdict(const Figure& figure) {
+  if (!figure.met()) return "MISSED";
+  return figure.is_bound() ? "met" : "-";
+}
+
+/// "-" where the windows do not give it.
+std::string number(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
 std::string line_of(const Estimate& estimate) {
-  return fmt::format("    {:<30} {:>20.12g} {:>9.1e} {:>9.1e}   {:>7} {:>7}  {}\n", estimate.method,
-                     estimate.value, estimate.error, estimate.spread,
-                     bound_text(estimate.bound.error), bound_text(estimate.bound.spread),
-                     verdict(estimate.bound, estimate.met()));
+  return fmt::format("    {:<38} {:>20} {:>9} {:>9}   {:>7} {:>7}  {}\n", estimate.method,
+                     number(estimate.value, "{:.12g}"), number(estimate.error, "{:.1e}"),
+                     number(estimate.spread, "{:.1e}"), bound_text(estimate.bound.error),
+                     bound_text(estimate.bound.spread), verdict(estimate));
 }
 
 std::string lines_of(const ParameterFigures& parameter) {
@@ -41,7 +47,7 @@ std::string lines_of(const ParameterFigures& parameter) {
       if (parameter.truth != 0.0) error = *error / parameter.truth;
     }
     out +=
-        fmt::format("    {:<30} {:>20} {:>9} {:>9}\n", "published",
+        fmt::format("    {:<38} {:>20} {:>9} {:>9}\n", "published",
                     parameter.published_value ? fmt::format("{}", *parameter.published_value) : "-",
                     short_number(error), short_number(parameter.published_spread));
   }
@@ -73,7 +79,7 @@ std::string text_of(const CaseFigures& figures) {
   fmt::format_to(std::back_inserter(out), "  {}\n  {} samples of {} s\n", figures.conditions,
                  figures.samples, figures.step_s);
   for (const std::string& note : figures.notes) out += "  " + note + "\n";
-  out += fmt::format("    {:<30} {:>20} {:>9} {:>9}   {:>15}\n", "", "estimate", "error", "COV",
+  out += fmt::format("    {:<38} {:>20} {:>9} {:>9}   {:>15}\n", "", "estimate", "error", "COV",
                      "bounds");
   for (const ParameterFigures& parameter : figures.parameters) out += lines_of(parameter);
   return out;
@@ -83,11 +89,10 @@ std::string text_of(const CheckGroup& group) {
   std::string out = heading(group.tables, group.title);
   for (const std::string& note : group.notes) out += "  " + note + "\n";
   for (const Check& check : group.checks) {
-    const bool bound = check.at_most || check.at_least;
     fmt::format_to(std::back_inserter(out),
                    "    {:<58} {:>11.4g} {:<4} published {:>8}  {:<22} {}\n", check.what,
-                   check.found, check.unit, short_number(check.published), check_bound(check),
-                   check.met() ? (bound ? "met" : "-") : "MISSED");
+                   check.found, check.unit == "1" ? "" : check.unit, short_number(check.published),
+                   check_bound(check), verdict(check));
   }
   return out;
 }

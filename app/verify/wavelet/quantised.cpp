@@ -55,6 +55,7 @@ CaseFigures quantised_duffing_result() {
   add("D8, level 1, recursive", over_run<CoarseRows<D8, Duffing, 1>>(input, model));
   add("D12, level 2, recursive", over_run<CoarseRows<D12, Duffing, 2>>(input, model));
   CaseFigures out = describe(published);
+  out.own_methods = true;
   for (std::size_t m = 0; m < results.size(); ++m) {
     const Bound bound = m < first_bound ? Bound{} : kQuantised;
     for (std::size_t i = 0; i < published.parameters.size(); ++i) {

@@ -24,6 +24,12 @@ struct Promise {
   Bound d8, faint_d8, d12;
   double d16_error{0.0}, faint_d16_error{0.0};
   bool tenth_of_published{false};
+
+  [[nodiscard]] Bound d12_for(const PublishedParameter& parameter) const noexcept {
+    Bound out = d12;
+    if (tenth_of_published && parameter.spread) out.spread = *parameter.spread / 10.0;
+    return out;
+  }
 };
 inline constexpr Promise kSmooth{{1e-5, 5e-5}, {1e-2, 2e-2}, {.error = 1e-6}, 1e-8, 1e-7, true};
 [[nodiscard]] constexpr Promise friction_promise(double error, double spread) {
@@ -82,10 +88,34 @@ template <class Rows, class M>
 /// The case without its estimates.
 [[nodiscard]] CaseFigures describe(const PublishedCase& published);
 
-/// The case by D8 in windows (the publication's way), by D12 in windows, and by D16 over the run.
+inline constexpr std::size_t kPublishedWindowRows = 32;
+
+/// D8 in the windows of the publication where `window_rows` differs, in four windows that are the
+/// quarters of the run, and over the whole run: the same rows combined in other ways.
+template <class M>
+[[nodiscard]] std::vector<MethodResult> other_ways(const Measured<M::kDof>& input, const M& model,
+                                                   std::size_t window_rows) {
+  using Rows = MotionRows<D8, M>;
+  std::vector<MethodResult> out;
+  if (window_rows != kPublishedWindowRows) {
+    out.push_back(over_windows<Rows>(input, model, kPublishedWindowRows));
+    out.back().method = fmt::format("D8, windows of {} rows", kPublishedWindowRows);
+  }
+  MethodResult whole = over_run<Rows>(input, model);
+  const std::size_t quarter = whole.rows / 4;
+  out.push_back(over_windows<Rows>(input, model, quarter));
+  out.back().method = fmt::format("D8, quarters of the run ({} rows)", quarter);
+  whole.method = "D8, recursive over the run";
+  out.push_back(whole);
+  return out;
+}
+
+/// The case by D8 in windows (the publication's way), by D12 in windows, and by D16 over the run,
+/// with bounds; then by other_ways() without.
 template <class M>
 [[nodiscard]] CaseFigures recompute(const PublishedCase& published, const M& model,
-                                    const Promise& promise, std::size_t window_rows = 32) {
+                                    const Promise& promise,
+                                    std::size_t window_rows = kPublishedWindowRows) {
   const auto input = measured<M::kDof>(published.simulate(), published.chain.mass_kg);
   MethodResult d8 = over_windows<MotionRows<D8, M>>(input, model, window_rows);
   MethodResult d12 = over_windows<MotionRows<D12, M>>(input, model, window_rows);
@@ -93,16 +123,18 @@ template <class M>
   d8.method = fmt::format("D8, windows of {} rows", window_rows);
   d12.method = fmt::format("D12, windows of {} rows", window_rows);
   d16.method = "D16, recursive over the run";
+  const std::vector<MethodResult> others = other_ways(input, model, window_rows);
   CaseFigures out = describe(published);
   for (std::size_t i = 0; i < published.parameters.size(); ++i) {
     const PublishedParameter& parameter = published.parameters[i];
-    Bound d12_bound = promise.d12;
-    if (promise.tenth_of_published && parameter.spread) d12_bound.spread = *parameter.spread / 10.0;
     const Bound d16_bound{.error = parameter.faint ? promise.faint_d16_error : promise.d16_error};
     const Bound& d8_bound = parameter.faint ? promise.faint_d8 : promise.d8;
-    out.parameters[i].estimates = {make_estimate(d8, i, parameter.truth, d8_bound),
-                                   make_estimate(d12, i, parameter.truth, d12_bound),
-                                   make_estimate(d16, i, parameter.truth, d16_bound)};
+    std::vector<Estimate>& estimates = out.parameters[i].estimates;
+    estimates = {make_estimate(d8, i, parameter.truth, d8_bound),
+                 make_estimate(d12, i, parameter.truth, promise.d12_for(parameter)),
+                 make_estimate(d16, i, parameter.truth, d16_bound)};
+    for (const MethodResult& other : others)
+      estimates.push_back(make_estimate(other, i, parameter.truth, {}));
   }
   return out;
 }

@@ -30,10 +30,16 @@ struct Mse {
 /// What the core's ModelSelection says of a run with one wavelet; MSE is that of mass 1.
 struct SelectionFigures {
   Mse true_model, linear, over_specified;
+  /// The least of the over-specified models that lack one of the true terms: no model without it
+  /// can do better.
+  Mse best_wrong;
   double least_true_t{0.0};
   double most_spurious_t{0.0};
   int wrong_choices{0};  ///< terms that choose() keeps although spurious, or drops although true
 };
+
+/// Why the t-ratios of D8 have no bound.
+extern const char* const kSpuriousNote;
 
 [[nodiscard]] std::vector<Check> selection_checks(const PublishedMse& published,
                                                   const SelectionFigures& d8,
@@ -43,6 +49,23 @@ template <class Fit>
 [[nodiscard]] Mse mse_of(const Fit& fit) {
   if (!fit.valid) return {NAN, NAN};
   return {fit.mse_percent[0], fit.held_out_mse_percent[0]};
+}
+
+/// Leaves one true term after the other out of the over-specified model.
+template <class Selection>
+[[nodiscard]] Mse best_wrong(const Selection& selection,
+                             const TermMask<Selection::kUnknowns>& true_terms) {
+  Mse out{INFINITY, INFINITY};
+  for (std::size_t i = 0; i < true_terms.size(); ++i) {
+    if (!true_terms[i]) continue;
+    auto terms = Selection::everything();
+    terms[i] = false;
+    const Mse one = mse_of(selection.fit(terms));
+    if (std::isnan(one.in_sample)) return one;
+    out.in_sample = std::min(out.in_sample, one.in_sample);
+    out.held_out = std::min(out.held_out, one.held_out);
+  }
+  return out;
 }
 
 /// `Over` is the over-specified model; the masks say which of its terms the system has, and which
@@ -60,6 +83,7 @@ template <class Wavelet, class Over>
   SelectionFigures out{.true_model = mse_of(selection->fit(true_terms)),
                        .linear = mse_of(selection->fit(linear_terms)),
                        .over_specified = mse_of(over),
+                       .best_wrong = best_wrong(*selection, true_terms),
                        .least_true_t = INFINITY};
   for (std::size_t i = 0; i < true_terms.size(); ++i) {
     const double t = std::abs(over.t_ratio[static_cast<int>(i)]);

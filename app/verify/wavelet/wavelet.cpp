@@ -75,7 +75,10 @@ int verify_wavelet(const VerifyOptions& options) {
   if (as_text) print_now(kIntroduction);
   const WaveletFigures figures = recompute_all(options.tables, as_text);
   const Tally count = tally(figures);
-  if (as_text) fmt::print("\n{} of {} bounds met\n", count.met, count.bound);
+  if (as_text) {
+    fmt::print("\n{} of {} bounds met\n", count.met, count.bound);
+    for (const std::string& line : missed(figures)) fmt::print("MISSED: table {}\n", line);
+  }
   if (options.json && !options.quiet) fmt::print("{}", json_of(figures));
   if (options.markdown && !options.quiet) fmt::print("{}", markdown_of(figures));
   return count.met == count.bound ? 0 : 1;
