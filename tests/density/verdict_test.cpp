@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/density/white_run.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr int kMinuteTicks = 60 * 300;
+
+/// A white run, each instant changed on its way.
+FokkerPlanckEstimates changed_run(const std::function<void(Motion&)>& change,
+                                  int samples = kMinuteTicks, FokkerPlanckConfig config = {}) {
+  const auto run = std::make_unique<FokkerPlanck>(config);
+  sim::WhiteInput source{{.seed = 21}};
+  for (int i = 0; i < samples; ++i) {
+    Motion motion = source.next();
+    change(motion);
+    run->update(motion);
+  }
+  return run->estimates(kMassKg, kStiffnessNpm);
+}
+
+void expect_no_number(const FokkerPlanckEstimates& found, Reason reason) {
+  for (const MethodResult* method : {&found.paper, &found.weak, &found.known_input}) {
+    EXPECT_FALSE(method->verdict.has_number);
+    EXPECT_FALSE(method->verdict.trusted);
+    EXPECT_TRUE(method->verdict.violates(reason)) << text(reason);
+    EXPECT_EQ(method->level_n.value, 0.0);
+    for (const CurvePoint& point : method->curve) EXPECT_EQ(point.force_n, 0.0);
+  }
+}
+
+TEST(Verdict, TrustsAWhiteMinute) {
+  const auto found = changed_run([](Motion&) {});
+  for (const MethodResult* method : {&found.paper, &found.weak, &found.known_input}) {
+    EXPECT_TRUE(method->verdict.has_number);
+    EXPECT_TRUE(method->verdict.trusted);
+    Reason reason{};
+    EXPECT_FALSE(method->verdict.first_violation(reason)) << text(reason);
+  }
+}
+
+TEST(Verdict, OfNothingAtAll) {
+  const FokkerPlanck nothing{{}};
+  expect_no_number(nothing.estimates(kMassKg, kStiffnessNpm), Reason::kNoMotion);
+}
+
+TEST(Verdict, OfAStandstill) {
+  expect_no_number(changed_run([](Motion& m) { m.still = true; }), Reason::kNoMotion);
+}
+
+TEST(Verdict, OfARecordWithoutMotion) {
+  const auto found = changed_run([](Motion& m) {
+    m.deflection_m = 0.0;
+    m.velocity_mps = 0.0;
+  });
+  expect_no_number(found, Reason::kNoMotion);
+  EXPECT_EQ(found.weak.verdict[Reason::kNoMotion].size, 0.0);
+}
+
+TEST(Verdict, OfAConstantChannel) {
+  expect_no_number(changed_run([](Motion& m) {
+                     m.relative_mps2 -= 2.0 * m.frame_mps2;
+                     m.frame_mps2 = 0.1;
+                     m.relative_mps2 += 2.0 * m.frame_mps2;
+                   }),
+                   Reason::kConstantChannel);
+  expect_no_number(changed_run([](Motion& m) { m.relative_mps2 = 2.0 * m.frame_mps2; }),
+                   Reason::kConstantChannel);
+}
+
+TEST(Verdict, OfAShortRecord) {
+  expect_no_number(changed_run([](Motion&) {}, 20 * 300), Reason::kShortRecord);
+}
+
+TEST(Verdict, LeavesOutWhatIsNotFinite) {
+  int i = 0;
+  const auto run = std::make_unique<FokkerPlanck>(FokkerPlanckConfig{});
+  sim::WhiteInput source{{.seed = 21}};
+  for (; i < kMinuteTicks; ++i) {
+    Motion motion = source.next();
+    if (i % 1000 == 0) motion.frame_mps2 = std::numeric_limits<double>::quiet_NaN();
+    run->update(motion);
+  }
+  EXPECT_EQ(run->not_finite(), 18U);
+  const auto found = run->estimates(kMassKg, kStiffnessNpm);
+  EXPECT_TRUE(found.known_input.verdict.trusted);
+  EXPECT_NEAR(found.known_input.level_n.value, kLevelN, 10.0);
+}
+
+// The range holds four fifths of the mass. The sums of the other two forms have no range.
+TEST(Verdict, OfARangeThatClips) {
+  const double limit_mps = 8.9e-3;
+  const auto found = changed_run([](Motion&) {}, kMinuteTicks,
+                                 {.velocity_mps = {.low = -limit_mps, .high = limit_mps}});
+  const Finding& clipped = found.paper.verdict[Reason::kRangeClips];
+  EXPECT_TRUE(clipped.violated);
+  EXPECT_NEAR(clipped.size, 0.2, 0.04);
+  EXPECT_FALSE(found.paper.verdict.has_number);
+  EXPECT_EQ(found.paper.level_n.value, 0.0);
+  EXPECT_TRUE(found.weak.verdict.trusted);
+  EXPECT_TRUE(found.known_input.verdict.trusted);
+}
+
+// Two wheelsets of one truck at 60 km/h: nulls at 4.6, 13.9, 23.1 Hz.
+TEST(Verdict, OfTheWheelbaseComb) {
+  std::array<double, 32> past{};
+  std::size_t place = 0;
+  const auto found = changed_run([&](Motion& m) {
+    const double now = m.input_mps2();
+    m.relative_mps2 += past[place];
+    past[place] = now;
+    place = (place + 1) % past.size();
+  });
+  for (const MethodResult* method : {&found.paper, &found.weak}) {
+    EXPECT_TRUE(method->verdict.has_number);
+    EXPECT_FALSE(method->verdict.trusted);
+    EXPECT_TRUE(method->verdict.violates(Reason::kColouredInput));
+    EXPECT_GT(method->verdict[Reason::kColouredInput].size, 3.5);
+  }
+  EXPECT_TRUE(found.known_input.verdict.trusted);
+}
+
+TEST(Verdict, OfDeflectionThatFollowsVelocity) {
+  const auto found = changed_run([](Motion& m) { m.deflection_m += 0.05 * m.velocity_mps; });
+  EXPECT_TRUE(found.paper.verdict.violates(Reason::kDependence));
+  EXPECT_FALSE(found.paper.verdict.trusted);
+}
+
+TEST(Verdict, OfInputThatGrows) {
+  const auto run = std::make_unique<FokkerPlanck>(FokkerPlanckConfig{});
+  std::int64_t tick = 0;
+  for (const double level : {3.0e-3, 12.0e-3}) {
+    sim::WhiteInput source{{.seed = 22, .input_level = level}};
+    for (int i = 0; i < 100 * 300; ++i) {
+      Motion motion = source.next();
+      motion.tick = tick++;
+      run->update(motion);
+    }
+  }
+  const auto found = run->estimates(kMassKg, kStiffnessNpm);
+  EXPECT_TRUE(found.weak.verdict.violates(Reason::kNonStationary));
+  EXPECT_NEAR(found.weak.verdict[Reason::kNonStationary].size, std::log(8.5),
+              0.4);  // the power of v goes with the square
+  EXPECT_TRUE(found.known_input.verdict.trusted);
+}
+
+TEST(Verdict, HasWordsForEveryReason) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < kReasons; ++i) {
+    words.emplace_back(text(static_cast<Reason>(i)));
+    EXPECT_GT(words.back().size(), 10U);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(words[i], words[j]);
+  }
+}
+
+}  // namespace
+}  // namespace dampline
