@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/verify/fokker_planck.hpp"
 #include "app/verify/phase.hpp"
 #include "app/verify/subject.hpp"
 #include "app/verify/wavelet.hpp"
@@ -19,8 +20,10 @@ namespace {
 /// Every subject has one line here.
 const std::vector<VerifySubject>& subjects() {
   static const std::vector<VerifySubject> all{
-      {"wavelet", "wavelet-Galerkin identification (Ghanem and Romeo 2001)", &verify_wavelet},
+      {"fokker-planck", "damping from stationary densities (Kisilowski and Urbanski 1987)",
+       &verify_fokker_planck},
       {"phase", "resonances, sections and friction of the phase mappings", &verify_phase},
+      {"wavelet", "wavelet-Galerkin identification (Ghanem and Romeo 2001)", &verify_wavelet},
   };
   return all;
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "dampline/density/paper_form.hpp"
+
+namespace dampline::app {
+
+/// One figure of Kisilowski and Urbanski (1987), or one that decides about their method, beside
+/// what this program finds.
+struct FokkerPlanckFigure {
+  std::string quantity;   ///< with its unit
+  std::string published;  ///< "-" where the publication gives none
+  std::string computed;
+  std::string remark;    ///< why the published figure is not met, or what the computed one shows
+  bool promised{false};  ///< the program promises it, and ...
+  bool met{true};        ///< ... keeps it
+};
+
+/// A table in the form of the publication's Tables 1 and 2.
+struct PaperTable {
+  std::string name;  ///< "1" laden, "2" empty
+  std::string caption;
+  double half_mass_kg{0.0};  ///< force = half_mass_kg alpha
+  PaperForm whole;           ///< as published: v = 0 left in
+  PaperForm excluded;        ///< without the region around v = 0
+};
+
+struct FokkerPlanckCases {
+  std::vector<FokkerPlanckFigure> figures;
+  std::array<PaperTable, 2> tables;
+};
+
+/// Simulates and estimates; a few seconds.
+[[nodiscard]] FokkerPlanckCases fokker_planck_cases();
+
+}  // namespace dampline::app
