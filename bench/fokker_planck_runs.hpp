@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dampline/methods.hpp"
+#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
+#include "sim_hw/white_input.hpp"
+
+namespace dampline::bench {
+
+enum Form : std::size_t { kWeak, kPaper, kKnownInput, kForms };
+
+inline const std::array<std::string, kForms> kFormNames{"weak form", "paper's form, v = 0 left out",
+                                                        "known input"};
+
+inline const MethodResult& of(const FokkerPlanckEstimates& found, std::size_t form) {
+  if (form == kWeak) return found.weak;
+  return form == kPaper ? found.paper : found.known_input;
+}
+
+/// Mean, scatter and worst of signed relative errors.
+class Errors {
+ public:
+  void add(double x) {
+    n_ += 1.0;
+    const double delta = x - mean_;
+    mean_ += delta / n_;
+    squares_ += delta * (x - mean_);
+    worst_ = std::max(worst_, std::abs(x));
+  }
+  [[nodiscard]] double mean() const { return mean_; }
+  [[nodiscard]] double std() const { return n_ > 1.0 ? std::sqrt(squares_ / (n_ - 1.0)) : 0.0; }
+  [[nodiscard]] double worst() const { return worst_; }
+  [[nodiscard]] int count() const { return static_cast<int>(n_); }
+
+ private:
+  double n_{0.0}, mean_{0.0}, squares_{0.0}, worst_{0.0};
+};
+
+/// What one form did over several runs.
+struct Tally {
+  Errors level;  ///< relative; of the runs with a number
+  Errors curve;  ///< relative distance of the curve over |v| > 3 mm/s
+  Errors sigma;  ///< error of the level over its stated deviation
+  int runs{0};
+  int trusted{0};
+};
+using Tallies = std::array<Tally, kForms>;
+
+inline sim::TruckConfig truck_of(sim::Load load) {
+  return load == sim::Load::kLaden ? sim::laden_truck() : sim::empty_truck();
+}
+inline double level_of(const sim::TruckConfig& truck) {
+  return 0.5 * (truck.friction_positive_n + truck.friction_negative_n);
+}
+
+/// Relative distance of a curve from the two branches, |v| > 3 mm/s, root mean square over the
+/// samples. Both forces are positive numbers.
+inline double curve_error(const MethodResult& result, const VelocityHistogram& velocities,
+                          double positive_n, double negative_n) {
+  double errors = 0.0;
+  double squares = 0.0;
+  for (std::size_t b = 0; b < kVelocityBins; ++b) {
+    const double v = velocities.axis().centre(b);
+    if (std::abs(v) < 3.0e-3) continue;
+    std::size_t right = 1;  // the ends go on
+    while (right + 1 < result.points && result.curve[right].velocity_mps < v) ++right;
+    const CurvePoint& p = result.curve[right - 1];
+    const CurvePoint& q = result.curve[right];
+    const double u = (v - p.velocity_mps) / (q.velocity_mps - p.velocity_mps);
+    const double truth = v > 0.0 ? positive_n : -negative_n;
+    errors += velocities.mass(b) * std::pow(p.force_n + u * (q.force_n - p.force_n) - truth, 2);
+    squares += velocities.mass(b) * truth * truth;
+  }
+  return std::sqrt(errors / squares);
+}
+
+/// `absolute`: the branches themselves are observable, otherwise only half their sum.
+inline void tally(const FokkerPlanck& data, const sim::TruckConfig& truck, bool absolute,
+                  Tallies& all) {
+  const FokkerPlanckEstimates found = data.estimates(truck.moving_mass_kg, truck.stiffness_npm);
+  const double level_n = level_of(truck);
+  const double positive_n = absolute ? truck.friction_positive_n : level_n;
+  const double negative_n = absolute ? truck.friction_negative_n : level_n;
+  for (std::size_t form = 0; form < kForms; ++form) {
+    const MethodResult& result = of(found, form);
+    Tally& t = all[form];
+    ++t.runs;
+    t.trusted += result.verdict.trusted ? 1 : 0;
+    if (!result.verdict.has_number) continue;
+    t.level.add(result.level_n.value / level_n - 1.0);
+    t.curve.add(curve_error(result, data.velocities(), positive_n, negative_n));
+    t.sigma.add((result.level_n.value - level_n) / result.level_n.std);
+  }
+}
+
+struct White {
+  sim::Load load{sim::Load::kLaden};
+  double velocity_rms_mps{8.0e-3};
+  double seconds{300.0};
+  bool absolute{true};
+};
+
+inline sim::WhiteInputConfig white_input(const White& white, std::uint64_t seed) {
+  const sim::TruckConfig truck = truck_of(white.load);
+  return {.seed = seed,
+          .moving_mass_kg = truck.moving_mass_kg,
+          .stiffness_npm = truck.stiffness_npm,
+          .friction_positive_n = truck.friction_positive_n,
+          .friction_negative_n = truck.friction_negative_n,
+          .input_level =
+              sim::input_level_for(white.velocity_rms_mps, level_of(truck), truck.moving_mass_kg)};
+}
+
+inline std::unique_ptr<FokkerPlanck> run(const White& white, std::uint64_t seed) {
+  auto out =
+      std::make_unique<FokkerPlanck>(FokkerPlanckConfig{.deflection_is_absolute = white.absolute});
+  sim::WhiteInput source{white_input(white, seed)};
+  const auto samples = std::llround(white.seconds * sim::WhiteInput::sample_rate_hz());
+  for (std::int64_t i = 0; i < samples; ++i) out->update(source.next());
+  return out;
+}
+
+struct Ride {
+  sim::Load load{sim::Load::kLaden};
+  double speed_kmh{80.0};
+  double amplitude_m_rad{sim::kTrackAmplitudeLow};
+  double short_wave_mps2{2.0};  ///< corrugation
+  double seconds{300.0};
+};
+
+inline sim::SimulationConfig simulation_of(const Ride& ride, std::uint64_t seed) {
+  sim::SimulationConfig config =
+      sim::reference_run(ride.load, ride.speed_kmh, seed, ride.short_wave_mps2);
+  config.track.amplitude_m_rad = ride.amplitude_m_rad;
+  return config;
+}
+
+/// The motion that the shipped identifier finds in the three accelerations.
+inline std::unique_ptr<Methods> run(const Ride& ride, std::uint64_t seed) {
+  const sim::SimulationConfig config = simulation_of(ride, seed);
+  const IdentifierConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
+  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  auto methods = std::make_unique<Methods>(identifier_config);
+  sim::Simulation simulation{config};
+  const auto samples = std::llround(ride.seconds * sim::kSampleRateHz);
+  for (std::int64_t i = 0; i < samples; ++i)
+    methods->update(identifier->update(sim::to_sample(simulation.next())));
+  return methods;
+}
+
+}  // namespace dampline::bench
