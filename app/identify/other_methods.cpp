@@ -54,6 +54,17 @@ std::vector<Objection> objections_of(const TrustVerdict& verdict) {
   return out;
 }
 
+/// The same picture with its axes in other units.
+void stretch(PhasePicture& picture, double x, double y) {
+  picture.x_low *= x;
+  picture.x_high *= x;
+  picture.y_low *= y;
+  picture.y_high *= y;
+  for (auto& column : picture.density) {
+    for (float& density : column) density /= static_cast<float>(x * y);
+  }
+}
+
 }  // namespace
 
 void fill_densities(const FokkerPlanck& statistics, const TruckRecord& record, RunResult& result) {
@@ -61,6 +72,25 @@ void fill_densities(const FokkerPlanck& statistics, const TruckRecord& record, R
   result.densities = {
       density_table(statistics.deflections(), "deflection_m", record.correction.deflection()),
       density_table(statistics.velocities(), "velocity_mps", record.correction.velocity())};
+}
+
+void fill_phase(const PhaseView& view, const TruckRecord& record, RunResult& result) {
+  const auto phase = std::make_shared<PhaseSnapshot>();
+  view.snapshot(*phase);
+  const double y = record.correction.deflection();
+  const double v = record.correction.velocity();
+  stretch(phase->velocity_over_deflection, y, v);
+  stretch(phase->accel_over_deflection, y, 1.0);
+  stretch(phase->accel_over_velocity, v, 1.0);
+  phase->period.period_s /= record.correction.ratio;
+  phase->period.period_std_s /= record.correction.ratio;
+  for (std::size_t p = 0; p < kSectionPhases; ++p) {
+    for (std::size_t i = 0; i < phase->section_count[p]; ++i) {
+      phase->section[p][i].deflection_m *= y;
+      phase->section[p][i].velocity_mps *= v;
+    }
+  }
+  result.phase = phase;
 }
 
 void fill_methods(const FokkerPlanck& statistics, double mass_kg, double nominal_stiffness_npm,

@@ -2,11 +2,15 @@
 #pragma once
 #include "app/identify/truck_result.hpp"
 #include "dampline/methods.hpp"
+#include "dampline/phase/phase_view.hpp"
 
 namespace dampline::app {
 
 /// Densities of the motion, in the record's own time.
 void fill_densities(const FokkerPlanck& statistics, const TruckRecord& record, RunResult& result);
+
+/// The planes of the phase space and the sections, in the record's own time.
+void fill_phase(const PhaseView& view, const TruckRecord& record, RunResult& result);
 
 /// Every method's level, verdict, and force at the velocities of the curve, which is there already.
 /// `nominal_stiffness_npm` belongs to the nominal rate, as the statistics do.

@@ -85,6 +85,7 @@ TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
       config_{config},
       identifier_{std::make_unique<Identifier>(core_)},
       methods_{std::make_unique<Methods>(core_)},
+      phase_{std::make_unique<PhaseView>(PhaseViewConfig{.sample_rate_hz = core_.sample_rate_hz})},
       block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
       history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
       excerpt_{core_.sample_rate_hz} {}
@@ -100,7 +101,10 @@ void TruckRun::take(const Sample& sample) {
   clipping_.take(sample);
   const UpdateResult result = identifier_->update(sample);
   if (watcher_) watcher_(sample, result);
-  if (result.has_motion) excerpt_.take(result.motion);
+  if (result.has_motion) {
+    excerpt_.take(result.motion);
+    phase_->update(result.motion);
+  }
   methods_->update(result);
   if (!result.block_closed) return;
   note_block(result.block);
@@ -143,6 +147,7 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
   result.latency_s = identifier_->motion_latency_s();
   fill_history(history_.rows(), record, result);
   fill_motion(excerpt_.best(), record, result);
+  fill_phase(*phase_, record, result);
   fill_densities(methods_->fokker_planck(), record, result);
   if (config_.estimate.methods == "all")
     fill_methods(methods_->fokker_planck(), core_.moving_mass_kg, last.snapshot.stiffness_npm.value,

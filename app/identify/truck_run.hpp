@@ -16,6 +16,7 @@
 #include "app/run/result.hpp"
 #include "dampline/identifier.hpp"
 #include "dampline/methods.hpp"
+#include "dampline/phase/phase_view.hpp"
 
 namespace dampline::app {
 
@@ -76,6 +77,7 @@ class TruckRun {
   Config config_;
   std::unique_ptr<Identifier> identifier_;
   std::unique_ptr<Methods> methods_;
+  std::unique_ptr<PhaseView> phase_;
   double block_ticks_;
   bool started_{false};
   std::int64_t first_tick_{0};

@@ -79,6 +79,7 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
   body += section("Other methods", artist.figure(plot_methods(result), "methods", kMethodText) +
                                        method_section(result));
   body += section("Densities", artist.figure(plot_densities(result), "densities", kDensityText));
+  body += section("Phase space", phase_section(result));
   body += section("How the estimate settled",
                   artist.figure(plot_convergence(result), "convergence", kConvergenceText));
   body +=

@@ -15,6 +15,8 @@ namespace dampline::app {
 /// The methods beside the wavelet windows; those that the record contradicts are grey, with the
 /// reasons. Empty where there are none.
 [[nodiscard]] std::string method_section(const RunResult& result);
+/// The planes of the phase space as density pictures, with the sections. Empty without them.
+[[nodiscard]] std::string phase_section(const RunResult& result);
 /// Of a live run; empty for a record.
 [[nodiscard]] std::string live_section(const RunResult& result);
 [[nodiscard]] std::string provenance_section(const Provenance& provenance,

@@ -8,6 +8,7 @@
 
 #include "app/error.hpp"
 #include "app/run/parameters_json.hpp"
+#include "app/run/phase_json.hpp"
 #include "app/run/tables.hpp"
 
 namespace dampline::app {
@@ -35,6 +36,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   directory.write("parameters.json", to_json(result));
   directory.write("curve.csv", to_csv(result.curve, result.methods));
   if (!result.densities.empty()) directory.write("densities.csv", to_csv(result.densities));
+  if (result.phase) directory.write("phase.json", to_json(*result.phase));
   if (!files.state.empty()) directory.write("state.dls", files.state);
   if (!result.convergence.rows.empty())
     directory.write("convergence.csv", to_csv(result.convergence));
@@ -58,6 +60,7 @@ RunFiles read_files(const std::filesystem::path& run) {
   const auto curve = run / "curve.csv";
   read_curve(read_text(curve), curve.string(), files.result);
   files.result.densities = read_extra(run / "densities.csv", read_densities);
+  files.result.phase = read_extra(run / "phase.json", read_phase);
   files.result.convergence = read_extra(run / "convergence.csv", read_convergence);
   files.result.motion = read_extra(run / "motion.csv", read_motion);
   files.result.force = read_extra(run / "force.csv", read_force);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "app/run/methods.hpp"
+#include "dampline/phase/phase_view.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {
@@ -113,6 +115,7 @@ struct RunResult {
   std::vector<CurveRow> curve;  ///< ascending velocity; a jump at 0 is two rows with velocity 0
   std::vector<MethodSummary> methods;  ///< beside the wavelet windows, where they were asked for
   std::vector<DensityTable> densities;
+  std::shared_ptr<const PhaseSnapshot> phase;  ///< of a truck; large, hence shared
   Convergence convergence;
   std::vector<MotionRow> motion;   ///< an excerpt of at most 20 s
   std::vector<ForceRow> force;     ///< an excerpt; empty for a truck

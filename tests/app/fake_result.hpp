@@ -7,6 +7,28 @@
 
 namespace dampline::app {
 
+/// Three Gaussian planes and a section of phase 0.
+inline std::shared_ptr<const PhaseSnapshot> fake_phase() {
+  auto phase = std::make_shared<PhaseSnapshot>();
+  for (PhasePicture* picture : {&phase->velocity_over_deflection, &phase->accel_over_deflection,
+                                &phase->accel_over_velocity}) {
+    *picture = {PictureState::kGood, -2e-3, 2e-3, -0.05, 0.05, 90000, 0.001, {}};
+    for (int i = 0; i < 64; ++i) {
+      for (int j = 0; j < 64; ++j) {
+        const double r2 = 0.01 * ((i - 31.5) * (i - 31.5) + (j - 31.5) * (j - 31.5));
+        if (r2 < 9.0)
+          picture->density[std::size_t(i)][std::size_t(j)] = float(3e4 * std::exp(-0.5 * r2));
+      }
+    }
+  }
+  phase->period = {PeriodState::kFound, 0.37, 0.002, 0.8, 0.97, 0.999};
+  phase->section_count[0] = 2;
+  phase->section[0][0] = {1e-3, 0.02, -0.4};
+  phase->section[0][1] = {1.1e-3, 0.019, -0.5};
+  phase->still = 7;
+  return phase;
+}
+
 /// A truck's result with everything in it, made from closed formulas: nothing was identified.
 inline RunResult fake_result() {
   RunResult r;
@@ -56,6 +78,7 @@ inline RunResult fake_result() {
       table.rows.push_back({2e-4 * i, 800.0 * std::exp(-0.01 * i * i), 100.0});
     r.densities.push_back(table);
   }
+  r.phase = fake_phase();
   r.convergence.names = {"coulomb", "stiffness"};
   r.convergence.units = {"N", "N/m"};
   for (int i = 1; i <= 75; ++i) {

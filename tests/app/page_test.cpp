@@ -39,10 +39,11 @@ TEST(Page, HoldsEverythingAndNeedsNothingElse) {
     EXPECT_THAT(page.html, Not(HasSubstr(outside)));
   if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot here: the drawings were not looked at";
   EXPECT_EQ(page.warning, "");
-  EXPECT_EQ(count(page.html, "<svg"), 6U);
-  for (const char* label : {"damping force F (kN)", "relative velocity v (mm/s)",
-                            "time in the record (s)", "stiffness (MN/m)", "coulomb (kN)",
-                            "F sign v (kN)", "relative deflection y (mm)", "density (s/mm)"})
+  EXPECT_EQ(count(page.html, "<svg"), 7U);
+  for (const char* label :
+       {"damping force F (kN)", "relative velocity v (mm/s)", "time in the record (s)",
+        "stiffness (MN/m)", "coulomb (kN)", "F sign v (kN)", "relative deflection y (mm)",
+        "density (s/mm)", "y (mm)", "v (mm/s)", "period 0.37 s"})
     EXPECT_THAT(page.html, HasSubstr(label));
 }
 

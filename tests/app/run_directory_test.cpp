@@ -12,6 +12,7 @@
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
 #include "app/run/parameters_json.hpp"
+#include "app/run/phase_json.hpp"
 #include "app/run/run_toml.hpp"
 #include "app/run/tables.hpp"
 #include "tests/app/fake_result.hpp"
@@ -121,6 +122,8 @@ TEST_F(RunDirectoryTest, ReadsBackWhatItWrote) {
   EXPECT_EQ(to_json(back.result), to_json(result));
   EXPECT_EQ(to_csv(back.result.curve, back.result.methods), to_csv(result.curve, result.methods));
   EXPECT_EQ(to_csv(back.result.densities), to_csv(result.densities));
+  EXPECT_EQ(to_json(*back.result.phase), to_json(*result.phase));
+  EXPECT_EQ(back.result.phase->section_count[0], 2U);
   EXPECT_EQ(to_csv(back.result.convergence), to_csv(result.convergence));
   EXPECT_EQ(to_csv(back.result.motion), to_csv(result.motion));
   EXPECT_EQ(to_csv(back.result.excluded), to_csv(result.excluded));

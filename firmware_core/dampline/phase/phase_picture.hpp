@@ -8,7 +8,7 @@
 
 namespace dampline {
 
-inline constexpr std::size_t kPictureCells = 64;
+inline constexpr std::size_t kPictureCells = 96;
 
 /// What a picture is worth.
 enum class PictureState : std::uint8_t {

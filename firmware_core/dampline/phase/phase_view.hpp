@@ -54,7 +54,7 @@ class PhaseView {
 
   void update(const Motion& motion) noexcept;
 
-  /// A pass over all cells. `out` is some 75 KiB: place it yourself.
+  /// A pass over all cells. `out` is some 130 KiB: place it yourself.
   void snapshot(PhaseSnapshot& out) const noexcept;
 
  private:
