@@ -154,6 +154,9 @@ TEST(VerifyWavelet, PrintsATableInEveryForm) {
   const std::string markdown = printed({.markdown = true, .tables = {"12"}});
   EXPECT_NE(markdown.find("| 12 | Coulomb friction, free | e | 0.2 N | 0.206 |"), std::string::npos)
       << markdown;
+  const std::string checks = printed({.markdown = true, .tables = {"step"}});
+  EXPECT_NE(checks.find("| - | >= 0.7999, <= 0.8001 | 0.8 N/m | yes |"), std::string::npos)
+      << checks;
   EXPECT_EQ(printed({.quiet = true, .tables = {"12"}}), "");
 }
 

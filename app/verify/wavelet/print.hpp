@@ -14,6 +14,8 @@ namespace dampline::app {
 
 /// "3", "3, 4".
 [[nodiscard]] std::string table_names(const std::vector<std::string>& tables);
+/// "<= 4", ">= 0.1, <= 0.2", or "-" where nothing is promised.
+[[nodiscard]] std::string bound_text(const Check& check);
 /// "1.2e-07", or "-" where there is none.
 [[nodiscard]] std::string short_number(const std::optional<double>& value);
 

@@ -78,12 +78,13 @@ std::string other_table(const CaseFigures& figures) {
 
 std::string check_table(const std::vector<CheckGroup>& groups) {
   std::string out =
-      "\n| Table | System | Figure | Published | Found | met |\n|---|---|---|---|---|---|\n";
+      "\n| Table | System | Figure | Published | Promised | Found | met "
+      "|\n|---|---|---|---|---|---|---|\n";
   for (const CheckGroup& group : groups) {
     for (const Check& check : group.checks) {
-      fmt::format_to(std::back_inserter(out), "| {} | {} | {} | {} | {:.3g}{} | {} |\n",
+      fmt::format_to(std::back_inserter(out), "| {} | {} | {} | {} | {} | {:.3g}{} | {} |\n",
                      table_names(group.tables), cell(group.title), cell(check.what),
-                     short_number(check.published), check.found,
+                     short_number(check.published), bound_text(check), check.found,
                      check.unit == "1" ? "" : " " + check.unit,
                      check.met() ? (check.is_bound() ? "yes" : "-") : "**no**");
     }

@@ -55,19 +55,19 @@ std::string lines_of(const ParameterFigures& parameter) {
   return out;
 }
 
-std::string check_bound(const Check& check) {
-  std::string out;
-  if (check.at_least) out += fmt::format(">= {:.4g}", *check.at_least);
-  if (check.at_most) out += fmt::format("{}<= {:.4g}", out.empty() ? "" : ", ", *check.at_most);
-  return out.empty() ? "-" : out;
-}
-
 }  // namespace
 
 std::string table_names(const std::vector<std::string>& tables) {
   std::string out;
   for (const std::string& name : tables) out += (out.empty() ? "" : ", ") + name;
   return out;
+}
+
+std::string bound_text(const Check& check) {
+  std::string out;
+  if (check.at_least) out += fmt::format(">= {:.4g}", *check.at_least);
+  if (check.at_most) out += fmt::format("{}<= {:.4g}", out.empty() ? "" : ", ", *check.at_most);
+  return out.empty() ? "-" : out;
 }
 
 std::string short_number(const std::optional<double>& value) {
@@ -92,7 +92,7 @@ std::string text_of(const CheckGroup& group) {
     fmt::format_to(std::back_inserter(out),
                    "    {:<58} {:>11.4g} {:<4} published {:>8}  {:<22} {}\n", check.what,
                    check.found, check.unit == "1" ? "" : check.unit, short_number(check.published),
-                   check_bound(check), verdict(check));
+                   bound_text(check), verdict(check));
   }
   return out;
 }
