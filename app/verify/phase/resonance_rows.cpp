@@ -19,6 +19,8 @@ struct SweepCase {
   sim::OscillatorLaw law;
   std::vector<double> swings_mps2;
   SweepBand band;
+  const char* remark{""};
+  double place_std_rad_s{0.0};  ///< of the peak, beside the sweep's step
 };
 
 std::vector<SweepCase> sweep_cases() {
@@ -28,9 +30,21 @@ std::vector<SweepCase> sweep_cases() {
                       .count = 50,
                       .settle_periods = 10,
                       .steps_per_period = 1000};
+  const SweepBand near{.low_rad_s = 0.04,
+                       .high_rad_s = 0.4,
+                       .count = 73,
+                       .settle_periods = 40,
+                       .steps_per_period = 1600};
   const double y_c = kStudyReversalM;
   return {
       {"Coulomb friction", kPublishedCoulomb, {.friction_mps2 = 1.0}, {0.5, 1.0, 1.2, 1.5}, wide},
+      {"Coulomb friction",
+       kPublishedCoulomb,
+       {.friction_mps2 = 1.0},
+       {1.005},
+       near,
+       "; the swing published is no larger than the friction; as it exceeds it by more, the peak "
+       "moves from 0 to 1 rad/s, and half a per cent gives both published figures"},
       {"Coulomb friction, smoothed tanh(v / 0.5)",
        kPublishedCoulomb,
        {.friction_mps2 = 1.0, .creep_mps = 0.5},
@@ -41,6 +55,14 @@ std::vector<SweepCase> sweep_cases() {
        {.friction_mps2 = 1.0, .reversal_m = y_c},
        {0.5, 1.0, 1.2, 1.5},
        wide},
+      {"structural friction, magnitude |1 + y / y_c|",
+       kPublishedStructural,
+       {.friction_mps2 = 1.0, .reversal_m = y_c},
+       {1.005},
+       near,
+       "; the same half per cent; it still creeps after 40 periods, and the peak's place depends "
+       "on how long it may: 0.145 ... 0.175 rad/s",
+       0.012},
       {"structural friction, 1 + y / y_c with its sign",
        kPublishedStructural,
        {.friction_mps2 = 1.0, .reversal_m = y_c, .may_turn_negative = true},
@@ -73,8 +95,9 @@ PhaseRow row_of(const SweepCase& c, double swing_mps2) {
                              amplitude, at == 0 ? "low" : "high");
   } else {
     row.found = sweep.rate_rad_s[at];
-    row.deviation = spacing / std::sqrt(12.0);  // of a place known to one step of the sweep
-    row.remark = fmt::format("largest amplitude {:.3f}", amplitude);
+    // A place known to one step of the sweep.
+    row.deviation = std::hypot(spacing / std::sqrt(12.0), c.place_std_rad_s);
+    row.remark = fmt::format("largest amplitude {:.3g}{}", amplitude, c.remark);
   }
   return row;
 }

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The figures of the phase mappings that need few runs, with bounds written out here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/verify/phase/rows.hpp"
+#include "app/verify/phase/studies.hpp"
+
+namespace dampline::app {
+namespace {
+
+const PhaseRow& row_of(const std::vector<PhaseRow>& rows, const std::string& what) {
+  const auto at =
+      std::find_if(rows.begin(), rows.end(), [&](const PhaseRow& row) { return row.what == what; });
+  if (at == rows.end()) throw std::runtime_error{"no row " + what};
+  return *at;
+}
+
+TEST(PhaseFigures, ResonancesAreFoundOrExplained) {
+  const std::vector<PhaseRow> rows = resonance_rows();
+  EXPECT_NEAR(*row_of(rows, "viscous damping, c = 1").found, std::sqrt(0.5), 1e-4);
+  for (const PhaseRow& row : rows) {
+    EXPECT_TRUE(row.found || row.remark.rfind("none: ", 0) == 0) << row.what;
+    EXPECT_EQ(row.found.has_value(), row.deviation.has_value()) << row.what;
+  }
+  // A swing that never exceeds the friction moves nothing.
+  for (const char* what : {"Coulomb friction, P1 = 0.5", "Coulomb friction, P1 = 1"})
+    EXPECT_FALSE(row_of(rows, what).found) << what;
+  EXPECT_NEAR(*row_of(rows, "Coulomb friction, P1 = 1.005").found, 0.12, 0.01);
+  EXPECT_NEAR(*row_of(rows, "structural friction, magnitude |1 + y / y_c|, P1 = 1.005").found, 0.16,
+              0.02);
+}
+
+TEST(PhaseFigures, FrictionIsFoundFromNoisySections) {
+  for (const std::uint64_t seed : {71U, 72U}) {
+    const FrictionStudy slight = study_friction(0.01, seed);
+    EXPECT_LT(slight.friction_error, 0.015);
+    EXPECT_NEAR(slight.law.friction_mps2.value, 1.0, 0.005);
+    EXPECT_NEAR(slight.law.reversal_m.value, kStudyReversalM, 0.02 * kStudyReversalM);
+    EXPECT_LT(study_friction(0.05, seed).friction_error, 0.035);
+  }
+}
+
+TEST(PhaseFigures, SystemsAreDeclaredWhatTheyAre) {
+  for (const std::uint64_t seed : {81U, 82U, 83U}) {
+    EXPECT_EQ(study_planarity({.viscous_per_s = 0.3}, 0.01, seed).state, PlanarityState::kLinear);
+    for (const sim::OscillatorLaw& law :
+         {sim::OscillatorLaw{.viscous_per_s = 0.3, .friction_mps2 = 0.2},
+          sim::OscillatorLaw{.friction_mps2 = 1.0, .reversal_m = kStudyReversalM},
+          sim::OscillatorLaw{.viscous_per_s = 0.3, .cubic_per_m2s2 = 0.1}})
+      EXPECT_EQ(study_planarity(law, 0.01, seed).state, PlanarityState::kNonlinear);
+  }
+}
+
+}  // namespace
+}  // namespace dampline::app
