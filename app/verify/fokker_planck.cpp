@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "app/error.hpp"
 #include "app/verify/fokker_planck_cases.hpp"
@@ -17,12 +18,19 @@ const char* standing(const FokkerPlanckFigure& figure) {
   return figure.met ? "met" : "MISSED";
 }
 
+/// With the bars of magnitudes escaped, which would end a cell.
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+    text.insert(at, 1, '\\');
+  return text;
+}
+
 void print_figures(const FokkerPlanckCases& cases, bool markdown) {
   if (markdown) fmt::print("| figure | published | computed | | |\n|--|--|--|--|--|\n");
   for (const FokkerPlanckFigure& f : cases.figures) {
     if (markdown) {
-      fmt::print("| {} | {} | {} | {} | {} |\n", f.quantity, f.published, f.computed, standing(f),
-                 f.remark);
+      fmt::print("| {} | {} | {} | {} | {} |\n", cell(f.quantity), f.published, f.computed,
+                 standing(f), cell(f.remark));
     } else {
       fmt::print("{:<62} published {:>18}   computed {:>20}  {}\n    {}\n", f.quantity, f.published,
                  f.computed, standing(f), f.remark);
