@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "app/text/meaning.hpp"
 #include "app/text/quantity.hpp"
@@ -12,16 +12,41 @@
 namespace dampline::app {
 namespace {
 
+/// Name, value, deviation, unit and a remark, in columns.
+std::string estimate_line(std::string_view name, const Estimate& estimate, std::string_view unit,
+                          std::string_view remark) {
+  const QuantityText text = format_quantity(estimate.value, estimate.std);
+  const std::string std = text.std.empty() ? "" : "± " + text.std;
+  // The sign is two bytes wide and one column: pad by hand.
+  const std::size_t columns = text.std.empty() ? 0 : text.std.size() + 2;
+  return fmt::format("  {:<20} {:>14} {}{} {:<6} {}\n", name, text.value, std,
+                     std::string(columns < 12 ? 12 - columns : 0, ' '), unit, remark);
+}
+
 std::string parameter_lines(const RunResult& result) {
   std::string out;
-  for (const Parameter& p : result.parameters) {
-    const QuantityText text = format_quantity(p.value, p.std);
-    const std::string std = text.std.empty() ? "" : "± " + text.std;
-    // The sign is two bytes wide and one column: pad by hand.
-    const std::size_t columns = text.std.empty() ? 0 : text.std.size() + 2;
-    out += fmt::format("  {:<20} {:>14} {}{} {:<6} {}\n", p.name, text.value, std,
-                       std::string(columns < 12 ? 12 - columns : 0, ' '), p.unit,
-                       meaning_of_parameter(p.name));
+  for (const Parameter& p : result.parameters)
+    out += estimate_line(p.name, {p.value, p.std}, p.unit, meaning_of_parameter(p.name));
+  return out;
+}
+
+std::string verdict_on(const MethodSummary& method) {
+  if (method.trusted) return "can be trusted here";
+  std::string out = "not to be trusted here";
+  for (const Objection& o : method.objections)
+    out += fmt::format("{} {}: {:.3g}{}{}, tolerated {:.3g}",
+                       &o == method.objections.data() ? ":" : ";", o.reason, o.size,
+                       o.unit.empty() ? "" : " ", o.unit, o.limit);
+  return out;
+}
+
+std::string method_lines(const RunResult& result) {
+  std::string out;
+  for (const MethodSummary& m : result.methods) {
+    if (m.has_level)
+      out += estimate_line(m.name, m.level_n, "N", verdict_on(m));
+    else
+      out += fmt::format("  {:<20} no level; {}\n", m.name, verdict_on(m));
   }
   return out;
 }
@@ -51,8 +76,8 @@ std::string excluded_line(const RunResult& result) {
 }  // namespace
 
 std::string summarize(const RunResult& result) {
-  std::string out =
-      result.headline + "\n" + parameter_lines(result) + fit_line(result) + excluded_line(result);
+  std::string out = result.headline + "\n" + parameter_lines(result) + method_lines(result) +
+                    fit_line(result) + excluded_line(result);
   if (!result.asymmetry.empty()) out += fmt::format("  {:<20} {}\n", "asymmetry", result.asymmetry);
   if (result.std_is_lower_bound)
     out += fmt::format("  {:<20} the stated deviations are lower bounds\n", "uncertainty");
