@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/parameter_drift.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dampline/estimate/cholesky.hpp"
+#include "dampline/estimate/law_profile.hpp"
+#include "dampline/guard/block_series.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr ScaleMask kAllScales{true, true, true, true, true};
+constexpr std::size_t kFewest = 10;  // entries
+constexpr std::size_t kFolds = 5;
+constexpr std::size_t kSide = 2;  // entries before and after a step
+// A change is named when it explains so much of the held-out error; or less of it, where the
+// entries' own values step.
+constexpr double kGain = 0.05;
+constexpr double kSmallGain = 0.025;
+constexpr double kSmallGainT = 4.0;
+constexpr double kLeastGain = 0.01;
+constexpr double kStepSignificant = 8.0;  // clean records stay below 5
+
+using Model = LawModel<false>;
+using Profile = LawProfile<false>;
+constexpr int kUnknowns = Model::kUnknowns;
+using Theta = Eigen::Matrix<double, kUnknowns, 1>;
+using Gram = Eigen::Matrix<double, kUnknowns + 1, kUnknowns + 1>;
+constexpr int kMore = kUnknowns + 1;  // unknowns with the change
+using MoreTheta = Eigen::Matrix<double, kMore, 1>;
+using MoreGram = Eigen::Matrix<double, kMore + 1, kMore + 1>;
+using Square = Eigen::Matrix<double, kMore, kMore>;
+using Weights = std::array<double, kEntries>;
+
+struct Entries {
+  std::array<Gram, kEntries> gram{};
+  std::size_t count{0};
+};
+
+Gram gram_of(const ScaleFactors& factors, const Profile& law) noexcept {
+  Gram out = Gram::Zero();
+  for (std::size_t s = 0; s < kScales; ++s) {
+    if (!(law.fit.weight[s] > 0.0)) continue;
+    for (int i = 0; i < kRowColumns; ++i) {
+      const Eigen::Matrix<double, kUnknowns + 1, 1> row =
+          law.map.transpose().lazyProduct(factors.factor[s].row(i));
+      out += law.fit.weight[s] * row.lazyProduct(row.transpose());
+    }
+  }
+  return out;
+}
+
+template <int Q>
+double error_of(const Eigen::Matrix<double, Q + 1, Q + 1>& gram,
+                const Eigen::Matrix<double, Q, 1>& theta) noexcept {
+  Eigen::Matrix<double, Q + 1, 1> extended;
+  extended << -theta, 1.0;
+  return extended.dot(gram.lazyProduct(extended));
+}
+
+template <int Q>
+Eigen::Matrix<double, Q, 1> solve(const Eigen::Matrix<double, Q + 1, Q + 1>& gram) noexcept {
+  return solve_cholesky<Q>(gram.template topLeftCorner<Q, Q>(),
+                           gram.template topRightCorner<Q, 1>());
+}
+
+/// Error of the entries, each predicted from those of the other folds. `of(i)`: gram of entry i.
+template <int Q, class Of>
+double held_out_error(std::size_t count, const Of& of) noexcept {
+  using Matrix = Eigen::Matrix<double, Q + 1, Q + 1>;
+  Matrix all = Matrix::Zero();
+  for (std::size_t b = 0; b < count; ++b) all += of(b);
+  double error = 0.0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    Matrix held = Matrix::Zero();
+    for (std::size_t b = fold; b < count; b += kFolds) held += of(b);
+    const Matrix rest = all - held;
+    error += error_of<Q>(held, solve<Q>(rest));
+  }
+  return error;
+}
+
+/// The entry's gram with the column w X u.
+MoreGram extended(const Gram& gram, double weight, const Theta& u) noexcept {
+  Eigen::Matrix<double, kUnknowns + 1, kMore + 1> map;
+  map.setZero();
+  for (int i = 0; i < kUnknowns; ++i) {
+    map(i, i) = 1.0;
+    map(i, kUnknowns) = weight * u[i];
+  }
+  map(kUnknowns, kMore) = 1.0;
+  const Eigen::Matrix<double, kUnknowns + 1, kMore + 1> half = gram.lazyProduct(map);
+  return map.transpose().lazyProduct(half);
+}
+
+Theta scaled_part(DriftingParameter parameter, const Theta& theta) noexcept {
+  Theta u = theta;
+  if (parameter == DriftingParameter::kFriction) u[Model::kStiffness] = 0.0;
+  if (parameter == DriftingParameter::kStiffness) {
+    u[Model::kCoulomb] = 0.0;
+    u[Model::kWidthChange] = 0.0;
+  }
+  return u;
+}
+
+Weights step_at(std::size_t entry) noexcept {
+  Weights w{};
+  for (std::size_t i = entry; i < kEntries; ++i) w[i] = 1.0;
+  return w;
+}
+
+Weights trend_over(std::size_t count) noexcept {
+  Weights w{};
+  for (std::size_t i = 0; i < count; ++i) {
+    w[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+  }
+  return w;
+}
+
+/// Relative change of the parameter, with its deviation from the scores of the entries.
+Estimate change_of(const Entries& entries, const Weights& weights, const Theta& u,
+                   DriftingParameter parameter) noexcept {
+  MoreGram all = MoreGram::Zero();
+  for (std::size_t b = 0; b < entries.count; ++b) {
+    all += extended(entries.gram[b], weights[b], u);
+  }
+  const MoreTheta theta = solve<kMore>(all);
+  // Column of the inverse that belongs to the change.
+  const MoreTheta inverse = solve_cholesky<kMore>(Square{all.topLeftCorner<kMore, kMore>()},
+                                                  MoreTheta{MoreTheta::Unit(kUnknowns)});
+  double variance = 0.0;
+  double last = 0.0;
+  for (std::size_t b = 0; b < entries.count; ++b) {
+    const MoreGram g = extended(entries.gram[b], weights[b], u);
+    MoreTheta score = g.topRightCorner<kMore, 1>();
+    score -= g.topLeftCorner<kMore, kMore>().lazyProduct(theta);
+    const double influence = inverse.dot(score);
+    variance += influence * influence + influence * last;
+    last = influence;
+  }
+  const double std =
+      std::sqrt(std::max(variance, 0.0)) * short_record_factor(static_cast<double>(entries.count));
+  const int which = parameter == DriftingParameter::kStiffness ? static_cast<int>(Model::kStiffness)
+                                                               : static_cast<int>(Model::kCoulomb);
+  const double c = theta[kUnknowns] * u[which] / theta[which];
+  const double c_std = std::abs(std * u[which] / theta[which]);
+  if (parameter != DriftingParameter::kMass) return {c, c_std};
+  return {-c / (1.0 + c), c_std / ((1.0 + c) * (1.0 + c))};  // the rows are per unit of mass
+}
+
+/// Largest step of each entry's own friction and stiffness, with the law's width held.
+void measure_steps(const Entries& entries, const Theta& theta, ParameterDrift& out) noexcept {
+  BlockSeries friction;
+  BlockSeries stiffness;
+  for (std::size_t b = 0; b < entries.count; ++b) {
+    const Gram& g = entries.gram[b];
+    const auto target = [&](int i) {
+      return g(i, kUnknowns) - theta[Model::kWidthChange] * g(i, Model::kWidthChange);
+    };
+    const double determinant = g(0, 0) * g(1, 1) - g(0, 1) * g(0, 1);
+    if (!(determinant > 0.0)) continue;
+    const auto tick = static_cast<std::int64_t>(b);
+    friction.add((g(1, 1) * target(0) - g(0, 1) * target(1)) / determinant, tick);
+    stiffness.add((g(0, 0) * target(1) - g(0, 1) * target(0)) / determinant, tick);
+  }
+  out.friction_significance = friction.step().significance;
+  out.stiffness_significance = stiffness.step().significance;
+}
+
+}  // namespace
+
+static_assert(Model::kCoulomb == 0 && Model::kStiffness == 1);
+
+ParameterDrift find_parameter_drift(const ScaleFactors& total, EntryList list,
+                                    double entry_s) noexcept {
+  ParameterDrift out;
+  const Profile law = Profile::make(total, kAllScales);
+  if (!law.fit.ok || list.size() < kFewest) return out;
+  Entries entries;
+  for (const ScaleFactors* factors : list) entries.gram[entries.count++] = gram_of(*factors, law);
+  const auto plain = [&](std::size_t b) { return entries.gram[b]; };
+  const double base = held_out_error<kUnknowns>(entries.count, plain);
+  if (!(base > 0.0)) return out;
+  out.judged = true;
+  double least = base;
+  Weights best{};
+  const auto consider = [&](DriftingParameter parameter, const Weights& weights, bool step,
+                            std::size_t entry) {
+    const Theta u = scaled_part(parameter, law.fit.theta);
+    const auto more = [&](std::size_t b) { return extended(entries.gram[b], weights[b], u); };
+    const double error = held_out_error<kMore>(entries.count, more);
+    if (!(error < least)) return;
+    least = error;
+    best = weights;
+    out.parameter = parameter;
+    out.step = step;
+    out.time_s = step ? static_cast<double>(entry) * entry_s : 0.0;
+  };
+  for (const DriftingParameter parameter :
+       {DriftingParameter::kFriction, DriftingParameter::kStiffness, DriftingParameter::kMass}) {
+    for (std::size_t b = kSide; b + kSide <= entries.count; ++b) {
+      consider(parameter, step_at(b), true, b);
+    }
+    consider(parameter, trend_over(entries.count), false, 0);
+  }
+  out.gain = 1.0 - least / base;
+  out.interval_s = entry_s;
+  if (out.gain <= 0.0) return out;
+  out.change = change_of(entries, best, scaled_part(out.parameter, law.fit.theta), out.parameter);
+  measure_steps(entries, law.fit.theta, out);
+  const double t = std::abs(out.change.value) / std::max(out.change.std, 1e-300);
+  const bool steps =
+      std::max(out.friction_significance, out.stiffness_significance) > kStepSignificant;
+  out.found = t > kSmallGainT &&
+              (out.gain > kGain || out.gain > kSmallGain || (out.gain > kLeastGain && steps));
+  return out;
+}
+
+ParameterDrift find_parameter_drift(const Statistics& statistics, double block_s) noexcept {
+  std::array<const ScaleFactors*, kEntries> list{};
+  const std::size_t count = std::min<std::size_t>(statistics.header.entry_count, kEntries);
+  for (std::size_t i = 0; i < count; ++i) list[i] = &statistics.entries[i];
+  return find_parameter_drift(statistics.total, EntryList{list.data(), count},
+                              block_s * statistics.header.blocks_per_entry);
+}
+
+}  // namespace dampline
