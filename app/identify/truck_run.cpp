@@ -88,7 +88,8 @@ TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
       phase_{std::make_unique<PhaseView>(PhaseViewConfig{.sample_rate_hz = core_.sample_rate_hz})},
       block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
       history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
-      excerpt_{core_.sample_rate_hz} {}
+      excerpt_{core_.sample_rate_hz},
+      faults_{core_} {}
 
 void TruckRun::take(const Sample& sample) {
   if (!started_) {
@@ -99,6 +100,7 @@ void TruckRun::take(const Sample& sample) {
   }
   newest_tick_ = std::max(newest_tick_, sample.tick);
   clipping_.take(sample);
+  faults_.take(sample);
   const UpdateResult result = identifier_->update(sample);
   if (watcher_) watcher_(sample, result);
   if (result.has_motion) {
@@ -153,6 +155,9 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
     fill_methods(methods_->fokker_planck(), core_.moving_mass_kg, last.snapshot.stiffness_npm.value,
                  record, result);
   result.warnings = clipping_.warnings();
+  const auto statistics = std::make_unique<Statistics>();
+  identifier_->export_statistics(*statistics);
+  faults_.finish(record, *statistics, result);
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
   return result;

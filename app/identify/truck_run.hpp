@@ -11,6 +11,7 @@
 #include "app/identify/clipping_watch.hpp"
 #include "app/identify/convergence_history.hpp"
 #include "app/identify/excluded_list.hpp"
+#include "app/identify/fault_watch.hpp"
 #include "app/identify/motion_excerpt.hpp"
 #include "app/identify/rate_correction.hpp"
 #include "app/run/result.hpp"
@@ -88,6 +89,7 @@ class TruckRun {
   MotionExcerpt excerpt_;
   ExcludedList excluded_;
   ClippingWatch clipping_;
+  FaultWatch faults_;
   Watcher watcher_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "app/report/faults.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/sections.hpp"
@@ -24,6 +25,10 @@ constexpr std::string_view kRigCurveText =
     "truth "
     "in about 19 of 20 cases, provided that the model fits. The strip at the bottom shows how many "
     "samples stand behind each part.";
+constexpr std::string_view kFaultText =
+    "Faults of sensors and of the transport. A line leads from where a fault was first seen to "
+    "where "
+    "it was last seen; coloured seconds hold samples that it spoils.";
 constexpr std::string_view kMethodText =
     "The force against the direction of motion, as each method finds it. What stands on an "
     "assumption that this record contradicts is drawn grey and dashed.";
@@ -76,6 +81,8 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
                                                             truck ? kCurveText : kRigCurveText));
   body += section("Parameters", parameter_section(result));
   body += section("Quality", quality_section(result));
+  body += section("Data quality",
+                  artist.figure(plot_faults(result), "faults", kFaultText) + fault_section(result));
   body += section("Other methods", artist.figure(plot_methods(result), "methods", kMethodText) +
                                        method_section(result));
   body += section("Densities", artist.figure(plot_densities(result), "densities", kDensityText));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/error.hpp"
+#include "app/run/faults_json.hpp"
 
 namespace dampline::app {
 namespace {
@@ -139,6 +140,7 @@ RunResult read_result(const Json& json) {
   result.warnings = json.at("warnings");
   result.notes = json.at("notes");
   result.events_more = json.value("events_more", std::uint64_t{0});
+  result.faults = read_faults(json);
   if (json.contains("methods")) read_methods(json.at("methods"), result);
   if (json.contains("live")) result.live = read_live(json.at("live"));
   return result;
@@ -169,6 +171,7 @@ std::string to_json(const RunResult& result) {
             {"warnings", result.warnings},
             {"notes", result.notes}};
   if (result.events_more > 0) json["events_more"] = result.events_more;
+  if (result.kind == "truck") write_faults(result.faults, json);
   if (!result.methods.empty()) json["methods"] = methods(result);
   if (result.live) json["live"] = live(*result.live);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

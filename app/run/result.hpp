@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/run/faults.hpp"
 #include "app/run/methods.hpp"
 #include "dampline/phase/phase_view.hpp"
 #include "dampline/snapshot.hpp"
@@ -123,6 +124,7 @@ struct RunResult {
   std::uint64_t excluded_more{0};  ///< stretches beyond the cap
   std::vector<RunEvent> events;    ///< capped
   std::uint64_t events_more{0};    ///< events beyond the cap
+  DataFaults faults;               ///< of a truck record
   std::optional<LiveFigures> live;
 };
 

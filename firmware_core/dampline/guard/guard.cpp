@@ -8,6 +8,7 @@
 namespace dampline {
 namespace {
 
+constexpr double kNoNumberMps2 = 1e6;
 constexpr double kUnknownStepMps2 = 1e-4;  // codes are made of this where the step is unknown
 constexpr double kStuckS = 0.2;            // clean records hold a code for 10 samples at most
 constexpr std::int64_t kOthersMove = 8;    // codes that another channel spans meanwhile
@@ -67,7 +68,10 @@ void Guard::update(const Sample& sample) noexcept {
   if (any_ && sample.tick <= last_.tick) return;
   Codes codes{};
   for (std::size_t c = 0; c < kChannels; ++c) {
-    if (!(std::abs(sample.accel_mps2[c]) < 1e6)) return;  // NaN too: the screen's, not ours
+    if (!(std::abs(sample.accel_mps2[c]) < kNoNumberMps2)) {  // NaN too: the screen's, not ours
+      ++no_numbers_;
+      return;
+    }
     codes[c] = std::llround(sample.accel_mps2[c] / unit(c));
   }
   if (!any_) {
@@ -93,9 +97,13 @@ void Guard::update(const Sample& sample) noexcept {
 // A few missing samples are bridged, so that what lives on delays goes on.
 void Guard::take_gap(const Sample& sample) noexcept {
   const std::int64_t missing = sample.tick - last_.tick - 1;
-  book_.report(FaultKind::kLostSamples, FaultChannel::kAll, book_.seconds(last_.tick + 1),
-               static_cast<double>(missing));
-  book_.spoil(FaultKind::kLostSamples, last_.tick, sample.tick);
+  const std::int64_t lost = missing - std::min(no_numbers_, missing);
+  no_numbers_ = 0;
+  if (lost > 0) {
+    book_.report(FaultKind::kLostSamples, FaultChannel::kAll, book_.seconds(last_.tick + 1),
+                 static_cast<double>(lost));
+    book_.spoil(FaultKind::kLostSamples, last_.tick, sample.tick);
+  }
   if (missing > kBridged) {
     restart();
     return;

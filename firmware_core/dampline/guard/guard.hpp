@@ -101,6 +101,7 @@ class Guard {
   std::array<Regularity, kChannels> rhythm_{};
   std::int64_t first_repeat_{-1};
   bool any_{false};
+  std::int64_t no_numbers_{0};  // samples since the last one that came with a value
   Sample last_{};
   std::int64_t block_start_{0};
   std::int64_t block_start_ns_{0};
