@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/error.hpp"
+#include "app/explain/fault_veto.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/identify/progress.hpp"
 #include "app/identify/source_kind.hpp"
@@ -107,6 +108,9 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   if (out.explanation.conclusion == effect::Conclusion::kNotReady)
     throw RunError{fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
                                options.source.path, pass.diagnosis->store().count())};
+  out.withheld = forbids_naming(out.identified.faults);
+  out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);
+  if (out.withheld || out.drifts) withhold_effects(out.explanation);
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(config, path, options.source.skip_bad_lines,
                                       pass.diagnosis->scale_m(), out.explanation, *explainer));

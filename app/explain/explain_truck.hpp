@@ -21,6 +21,8 @@ struct Validated {
 /// A truck record explained.
 struct Explained {
   effect::Explanation explanation;
+  bool withheld{false};  ///< faults of the data forbid to name an effect
+  bool drifts{false};    ///< a parameter that changed explains more than any effect
   std::vector<Validated> validation;
   RunResult identified;  ///< what identify says of the same record
   std::string state;     ///< for state.dls

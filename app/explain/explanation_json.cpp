@@ -55,6 +55,34 @@ Json step_json(const Explanation& e, std::size_t i) {
           {"runners_up", runners_up}};
 }
 
+Json faults_of(const DataFaults& faults) {
+  Json list = Json::array();
+  for (const FaultFinding& f : faults.list)
+    list.push_back({{"name", f.name},
+                    {"channel", f.channel},
+                    {"time_s", f.time_s},
+                    {"size", f.size},
+                    {"unit", f.unit}});
+  return list;
+}
+
+/// A parameter that changed, as the one step; its errors are those of the base, less its gain.
+Json drift_step(const Explanation& e, const DriftFinding& drift) {
+  auto terms = terms_of(e, 0);
+  terms.emplace_back("time_drift");
+  Json list = Json::array();
+  list.push_back(parameter(("time_drift_" + drift.parameter).c_str(), drift.change_percent, "%"));
+  if (drift.step)
+    list.push_back(parameter("time_drift_time", {drift.time_s, 0.29 * drift.interval_s}, "s"));
+  return {{"effect", "time_drift"},
+          {"terms", terms},
+          {"held_out_nmse_before", e.base.held_out_nmse},
+          {"held_out_nmse_after", e.base.held_out_nmse * (1.0 - drift.gain)},
+          {"parameters", list},
+          {"evidence", {{"gain", drift.gain}, {"kind", drift.step ? "step" : "drift"}}},
+          {"runners_up", Json::array()}};
+}
+
 }  // namespace
 
 std::vector<std::string> terms_of(const Explanation& e, std::size_t steps) {
@@ -77,13 +105,16 @@ std::string to_json(const Explained& explained) {
                           {"rrse_after", std::sqrt(v.nmse_after)},
                           {"nmse_before", v.nmse_before},
                           {"nmse_after", v.nmse_after}});
-  const Json json{{"verdict", effect::name_of(e.conclusion)},
+  const bool drifts = explained.drifts;
+  if (drifts) steps.push_back(drift_step(e, *explained.identified.faults.drift));
+  const auto verdict = drifts ? effect::Conclusion::kPartlyExplained : e.conclusion;
+  const Json json{{"verdict", effect::name_of(verdict)},
                   {"base", model(e, false)},
                   {"steps", steps},
                   {"final", model(e, true)},
                   {"floor_nmse", e.floor_nmse > 0.0 ? Json(e.floor_nmse) : Json(nullptr)},
                   {"validation", validation},
-                  {"faults", Json::array()},
+                  {"faults", faults_of(explained.identified.faults)},
                   {"signature", Json::object()}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -44,11 +44,25 @@ std::string step_text(const effect::Step& step) {
   return text;
 }
 
+std::string fault_text(const Explained& explained) {
+  const DataFaults& faults = explained.identified.faults;
+  std::string text;
+  for (const FaultFinding& f : faults.list)
+    text += fmt::format("  fault              {}, {}, at {:.1f} s\n", f.name, f.channel, f.time_s);
+  if (explained.withheld) text += "  the data have faults that look like effects: none is named\n";
+  if (faults.drift) text += fmt::format("  time_drift         {}\n", describe_drift(*faults.drift));
+  return text;
+}
+
 }  // namespace
 
 std::string summarize(const Explained& explained) {
   const Explanation& e = explained.explanation;
-  std::string text = fmt::format("{}: {}\n", effect::name_of(e.conclusion), sentence(e.conclusion));
+  std::string text =
+      explained.drifts
+          ? "partly_explained: a parameter changed while the record was made\n"
+          : fmt::format("{}: {}\n", effect::name_of(e.conclusion), sentence(e.conclusion));
+  text += fault_text(explained);
   text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n", "base",
                       e.base.held_out_nmse, quantity(e.base_coulomb_n, "N"),
                       quantity(e.base_stiffness_npm, "N/m"));

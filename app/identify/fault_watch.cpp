@@ -76,6 +76,7 @@ void FaultWatch::finish(const TruckRecord& record, const Statistics& statistics,
                              drift.step,
                              drift.time_s,
                              drift.interval_s,
+                             drift.gain,
                              {100.0 * drift.change.value, 100.0 * drift.change.std}};
     result.warnings.push_back("A parameter is not constant: " + describe_drift(*out.drift) +
                               ". The values stated are means over the record.");

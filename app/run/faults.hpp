@@ -33,6 +33,7 @@ struct DriftFinding {
   bool step{false};         ///< at once; else slowly over the whole record
   double time_s{0.0};       ///< of the step, in moving time
   double interval_s{0.0};   ///< of uncertainty of that time
+  double gain{0.0};         ///< share of the held-out error that it explains
   Estimate change_percent;  ///< after it, or at the end, against before
 };
 

@@ -35,6 +35,7 @@ Json drift(const DriftFinding& d) {
           {"kind", d.step ? "step" : "drift"},
           {"time_s", d.time_s},
           {"interval_s", d.interval_s},
+          {"gain", d.gain},
           {"change", d.change_percent.value},
           {"std", d.change_percent.std},
           {"unit", "%"}};
@@ -58,8 +59,9 @@ DataFaults read_faults(const Json& json) {
   out.speed_changes = json.at("inputs").at("speed_changes");
   if (!json.contains("time_drift")) return out;
   const Json& d = json.at("time_drift");
-  out.drift = DriftFinding{d.at("parameter"), d.at("kind") == "step", d.at("time_s"),
-                           d.at("interval_s"), Estimate{d.at("change"), d.at("std")}};
+  out.drift = DriftFinding{d.at("parameter"), d.at("kind") == "step",
+                           d.at("time_s"),    d.at("interval_s"),
+                           d.at("gain"),      Estimate{d.at("change"), d.at("std")}};
   return out;
 }
 

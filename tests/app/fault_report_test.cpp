@@ -59,7 +59,7 @@ TEST(FaultReport, SaysThatASoundRecordHasNone) {
 
 TEST(FaultReport, KeepsAParameterThatChangedThroughTheFile) {
   RunResult result = identify({});
-  result.faults.drift = DriftFinding{"coulomb", true, 150.0, 16.0, {12.0, 1.5}};
+  result.faults.drift = DriftFinding{"coulomb", true, 150.0, 16.0, 0.2, {12.0, 1.5}};
   const RunResult back = from_json(to_json(result), "memory");
   ASSERT_TRUE(back.faults.drift.has_value());
   EXPECT_EQ(describe_drift(*back.faults.drift),

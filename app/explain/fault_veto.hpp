@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "app/run/faults.hpp"
+#include "dampline/effect/explanation.hpp"
+
+namespace dampline::app {
+
+/// Whether a fault that the guards found makes the naming of an effect worthless. Samples that all
+/// channels lost or repeated, a stuck channel (left out) and a wrong rate do not.
+[[nodiscard]] bool forbids_naming(const DataFaults& faults) noexcept;
+
+/// Whether a parameter that changed explains more than the first effect does, by 2 % of the
+/// held-out error.
+[[nodiscard]] bool drift_explains_more(const DataFaults& faults,
+                                       const effect::Explanation& explanation) noexcept;
+
+/// Takes back the effects that were added: what is left is unexplained.
+void withhold_effects(effect::Explanation& explanation) noexcept;
+
+}  // namespace dampline::app

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/fault_veto.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/explain/explanation_json.hpp"
+
+namespace dampline::app {
+namespace {
+
+DataFaults with(const char* name, const char* channel) {
+  DataFaults faults;
+  FaultFinding& fault = faults.list.emplace_back();
+  fault.name = name;
+  fault.channel = channel;
+  fault.time_s = 12.0;
+  return faults;
+}
+
+effect::Explanation explained_by_one_effect(double gain) {
+  effect::Explanation explanation;
+  explanation.conclusion = effect::Conclusion::kExplained;
+  explanation.base.held_out_nmse = 0.2;
+  explanation.final.held_out_nmse = 0.2 * (1.0 - gain);
+  explanation.step_count = 1;
+  explanation.step[0].gain = gain;
+  return explanation;
+}
+
+TEST(FaultVeto, IsForFaultsThatLookLikeEffects) {
+  EXPECT_TRUE(forbids_naming(with("clock_drift", "frame")));
+  EXPECT_TRUE(forbids_naming(with("lost_samples", "wheelset1")));
+  EXPECT_FALSE(forbids_naming(with("lost_samples", "all")));
+  EXPECT_FALSE(forbids_naming(with("stuck_channel", "frame")));
+  EXPECT_FALSE(forbids_naming({}));
+}
+
+TEST(FaultVeto, TakesBackWhatWasAdded) {
+  effect::Explanation explanation = explained_by_one_effect(0.5);
+  withhold_effects(explanation);
+  EXPECT_EQ(explanation.conclusion, effect::Conclusion::kUnexplained);
+  EXPECT_EQ(explanation.step_count, 0U);
+  EXPECT_EQ(explanation.final.held_out_nmse, 0.2);
+}
+
+TEST(FaultVeto, PrefersAParameterThatChangedWhereItExplainsMore) {
+  DataFaults faults;
+  EXPECT_FALSE(drift_explains_more(faults, explained_by_one_effect(0.3)));
+  faults.drift = DriftFinding{"coulomb", true, 100.0, 8.0, 0.4, {10.0, 1.0}};
+  EXPECT_TRUE(drift_explains_more(faults, explained_by_one_effect(0.3)));
+  EXPECT_FALSE(drift_explains_more(faults, explained_by_one_effect(0.39)));
+}
+
+TEST(FaultVeto, IsWrittenToTheExplanation) {
+  Explained explained;
+  explained.identified.faults = with("clock_drift", "frame");
+  explained.identified.faults.drift = DriftFinding{"coulomb", true, 100.0, 8.0, 0.4, {10.0, 1.0}};
+  explained.drifts = true;
+  explained.explanation.base.held_out_nmse = 0.2;
+  const auto json = nlohmann::json::parse(to_json(explained));
+  EXPECT_EQ(json.at("verdict"), "partly_explained");
+  EXPECT_EQ(json.at("faults").at(0).at("name"), "clock_drift");
+  EXPECT_EQ(json.at("faults").at(0).at("time_s"), 12.0);
+  const auto& step = json.at("steps").at(0);
+  EXPECT_EQ(step.at("effect"), "time_drift");
+  EXPECT_EQ(step.at("parameters").at(0).at("name"), "time_drift_coulomb");
+  EXPECT_EQ(step.at("parameters").at(0).at("value"), 10.0);
+}
+
+}  // namespace
+}  // namespace dampline::app
