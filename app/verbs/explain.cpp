@@ -8,10 +8,16 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
+#include "app/error.hpp"
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/explanation_json.hpp"
+#include "app/explain/rig/explain_rig.hpp"
+#include "app/identify/source_kind.hpp"
+#include "app/rig/csv_rig_source.hpp"
+#include "app/rig/identify_rig.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
 #include "app/run/run_toml.hpp"
@@ -20,7 +26,10 @@ namespace dampline::app {
 namespace {
 
 struct Options {
-  ExplainOptions explain;
+  std::vector<std::string> records;
+  std::vector<std::string> validation;
+  std::string reference;
+  bool skip_bad_lines{false};
   std::string config;
   std::string out;
   bool json{false};
@@ -30,25 +39,65 @@ struct Options {
 
 std::filesystem::path place_of(const Options& options) {
   if (!options.out.empty()) return options.out;
-  const std::string& path = options.explain.source.path;
+  const std::string& path = options.records.front();
   const std::string stem = path == "-" ? "stdin" : std::filesystem::path{path}.stem().string();
   return free_run_name(std::filesystem::current_path(), stem);
+}
+
+/// What a run directory and the terminal get.
+struct Findings {
+  std::string json;
+  std::string summary;
+  std::string prediction;
+  RunFiles files;
+};
+
+Findings explain_truck_record(const Config& config, const Options& options, bool show_progress) {
+  if (options.records.size() > 1)
+    throw UsageError{
+        fmt::format("RECORD: found {} records, expected one of a truck; others go with --validate",
+                    options.records.size())};
+  const Explained found = explain_truck(
+      config,
+      {{options.records.front(), options.skip_bad_lines}, options.validation, show_progress});
+  return {to_json(found),
+          summarize(found),
+          "",
+          {found.identified, write_run_toml(config, found.inputs), found.state}};
+}
+
+Findings explain_rig_records(const Config& config, const Options& options) {
+  const RigExplanation found = explain_rig(
+      config, {options.records, options.validation, options.reference, options.skip_bad_lines});
+  std::vector<InputFile> inputs;
+  for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
+  for (const std::string& path : options.validation)
+    inputs.push_back(describe_input(path, "validation"));
+  const RunResult first = identify_rig(
+      csv_rig_record(options.records.front(), config.input, options.skip_bad_lines), config);
+  return {to_json(found),
+          summarize(found),
+          prediction_csv(found),
+          {first, write_run_toml(config, inputs), ""}};
 }
 
 int explain(const Options& options) {
   const Config config = options.config.empty() ? Config{} : load_config(options.config);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place, options.force};
-  ExplainOptions wanted = options.explain;
-  wanted.show_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  const Explained found = explain_truck(config, wanted);
-  directory.write("explanation.json", to_json(found));
-  stage_files({found.identified, write_run_toml(config, found.inputs), found.state}, directory);
+  const bool rig = detect_source(config, {options.records.front(), options.skip_bad_lines}) ==
+                   SourceKind::kRigCsv;
+  const bool show_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  const Findings found = rig ? explain_rig_records(config, options)
+                             : explain_truck_record(config, options, show_progress);
+  directory.write("explanation.json", found.json);
+  if (!found.prediction.empty()) directory.write("prediction.csv", found.prediction);
+  stage_files(found.files, directory);
   directory.commit();
   if (options.json) {
-    fmt::print("{}", to_json(found));
+    fmt::print("{}", found.json);
   } else if (!options.quiet) {
-    fmt::print("{}  {:<18} {}\n", summarize(found), "results", place.string());
+    fmt::print("{}results: {}\n", found.summary, place.string());
   }
   return 0;
 }
@@ -59,13 +108,16 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   CLI::App* verb = program.add_subcommand(
       "explain", "Find out what a model lacks: the effect, its size, the error before and after");
   const auto options = std::make_shared<Options>();
-  verb->add_option("RECORD", options->explain.source.path,
-                   "a truck's record: FILE.log (candump), FILE.csv, or a black box")
+  verb->add_option(
+          "RECORD", options->records,
+          "a truck's record: FILE.log (candump), FILE.csv, or a black box; or records of a "
+          "rig (FILE.csv), explained by one model")
       ->required();
-  verb->add_option("--validate", options->explain.validation,
-                   "a record that is never fitted, only predicted (repeatable)")
-      ->expected(1)
-      ->take_all();
+  verb->add_option("--validate", options->validation,
+                   "records that are never fitted, only predicted; after RECORD")
+      ->expected(1, -1);
+  verb->add_option("--reference-column", options->reference,
+                   "a rig's validation: a column with another prediction of the force, in N");
   verb->add_option("--config", options->config,
                    "configuration (TOML): [model] base and candidates, [car], [input]");
   verb->add_option("--out", options->out,
@@ -73,7 +125,7 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--force", options->force, "replace an earlier run in --out");
   verb->add_flag("--json", options->json, "print explanation.json instead of a table");
   verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
-  verb->add_flag("--skip-bad-lines", options->explain.source.skip_bad_lines,
+  verb->add_flag("--skip-bad-lines", options->skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
   verb->callback([options, &action] { action = [options] { return explain(*options); }; });
 }

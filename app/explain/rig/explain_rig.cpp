@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/rig/explain_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/error.hpp"
+#include "app/explain/rig/rig_search.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kStartS = 1.0;  // of measured force that may set the slip at the start
+constexpr int kStarts = 40;
+
+Eigen::VectorXd prediction(const RigModel& model, const RigRows& rows) {
+  return rows.values.leftCols(model.fit.theta.size()) * model.fit.theta;
+}
+
+/// Longest travel of a model's friction elements.
+double longest_travel_m(const RigModel& model) {
+  double out = 0.0;
+  for (const RigColumn& c : model.columns)
+    if (c.kind >= RigColumn::Kind::kStop) out = std::max(out, c.a);
+  return out;
+}
+
+/// The slip at the start that fits the first second best.
+double start_of(const RigModel& model, const RigSeries& series) {
+  const double longest_m = longest_travel_m(model);
+  RigSeries first = series;
+  const auto count =
+      std::min(series.size(), static_cast<Eigen::Index>(kStartS / series.interval_s));
+  first.deflection_m.conservativeResize(count);
+  first.velocity_mps.conservativeResize(count);
+  first.force_n.conservativeResize(count);
+  double best = 0.0;
+  double best_m = 0.0;
+  for (int i = -kStarts; i <= kStarts; ++i) {
+    first.start_m = longest_m * i / kStarts;
+    const RigRows rows = rows_of(model.columns, first, 1);
+    if (rows.values.rows() == 0) return 0.0;
+    const double error = (rows.values.rightCols<1>() - prediction(model, rows)).squaredNorm();
+    if (i > -kStarts && error >= best) continue;
+    best = error;
+    best_m = first.start_m;
+  }
+  return best_m;
+}
+
+double rrse(const Eigen::VectorXd& measured, const Eigen::VectorXd& predicted) {
+  return std::sqrt((measured - predicted).squaredNorm() /
+                   (measured.array() - measured.mean()).square().sum());
+}
+
+void compare_reference(const RigSeries& series, const RigRows& rows, const Eigen::VectorXd& final,
+                       RigValidated& out) {
+  if (series.reference_n.size() != series.size()) return;
+  std::vector<double> measured;
+  std::vector<double> reference;
+  std::vector<double> ours;
+  for (std::size_t r = 0; r < rows.sample.size(); ++r) {
+    const double value = series.reference_n[rows.sample[r]];
+    if (!std::isfinite(value)) continue;
+    const auto at = static_cast<Eigen::Index>(r);
+    measured.push_back(rows.values(at, rows.values.cols() - 1));
+    reference.push_back(value);
+    ours.push_back(final[at]);
+  }
+  if (measured.size() < 2) return;
+  const auto vector = [](const std::vector<double>& v) {
+    return Eigen::VectorXd{
+        Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()))};
+  };
+  out.has_reference = true;
+  out.reference_rrse = rrse(vector(measured), vector(reference));
+  out.same_rows_rrse = rrse(vector(measured), vector(ours));
+}
+
+RigValidated validate(const RigExplanation& explanation, RigSeries series) {
+  RigValidated out;
+  out.record = series.record;
+  out.start_m = start_of(explanation.final, series);
+  const RigRows base = rows_of(explanation.base.columns, series, 1);
+  series.start_m = out.start_m;
+  const RigRows final = rows_of(explanation.final.columns, series, 1);
+  if (final.values.rows() < 2)
+    throw RunError{fmt::format("{}: too short to validate on", out.record)};
+  const Eigen::VectorXd measured = final.values.rightCols<1>();
+  const Eigen::VectorXd predicted = prediction(explanation.final, final);
+  out.rrse_before = rrse(measured, prediction(explanation.base, base));
+  out.rrse_after = rrse(measured, predicted);
+  compare_reference(series, final, predicted, out);
+  for (std::size_t r = 0; r < final.sample.size(); ++r) {
+    out.time_s.push_back(series.time_s[final.sample[r]]);
+    out.measured_n.push_back(measured[static_cast<Eigen::Index>(r)]);
+    out.predicted_n.push_back(predicted[static_cast<Eigen::Index>(r)]);
+  }
+  return out;
+}
+
+}  // namespace
+
+RigExplanation explain_rig(const Config& config, const RigExplainOptions& options) {
+  std::vector<RigSeries> records;
+  for (const std::string& path : options.records) {
+    records.push_back(read_rig_series(path, config, options.skip_bad_lines));
+    if (records.back().has_gap && config.model.inertia == "identify")
+      throw RunError{fmt::format(
+          "{}: has gaps or values that are no number; expected none where the mass is identified",
+          path)};
+    if (records.back().size() < 500)
+      throw RunError{fmt::format("{}: found {} usable samples, expected at least 500", path,
+                                 records.back().size())};
+  }
+  RigSearch search{config, records};
+  RigExplanation out = search.run();
+  if (!out.base.fit.ok)
+    throw RunError{fmt::format("{}: too little motion to determine the model", records[0].record)};
+  for (const std::string& path : options.validation)
+    out.validation.push_back(validate(
+        out, read_rig_series(path, config, options.skip_bad_lines, options.reference_column)));
+  return out;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/rig/rig_explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/text/quantity.hpp"
+
+namespace dampline::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parameters_json(const std::vector<Parameter>& parameters) {
+  Json out = Json::array();
+  for (const Parameter& p : parameters)
+    out.push_back({{"name", p.name}, {"value", p.value}, {"std", p.std}, {"unit", p.unit}});
+  return out;
+}
+
+/// Mean over the records of what each one's error is.
+double mean_rrse(const RigFit& fit) {
+  double sum = 0.0;
+  for (const double nmse : fit.record_nmse) sum += std::sqrt(nmse);
+  return sum / static_cast<double>(fit.record_nmse.size());
+}
+
+Json model_json(const RigModel& model, const std::vector<std::string>& records) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < records.size(); ++r)
+    list.push_back(
+        {{"record", records[r]}, {"held_out_rrse", std::sqrt(model.fit.record_nmse[r])}});
+  return {{"terms", model.terms},
+          {"held_out_nmse", model.fit.held_out_nmse},
+          {"held_out_rrse", std::sqrt(model.fit.held_out_nmse)},
+          {"held_out_rrse_mean", mean_rrse(model.fit)},
+          {"records", list},
+          {"parameters", parameters_json(model.parameters)}};
+}
+
+Json step_json(const RigStep& step) {
+  Json runners_up = Json::array();
+  for (const auto& [effect, nmse] : step.runners_up)
+    runners_up.push_back({{"effect", effect}, {"held_out_nmse", nmse}});
+  return {{"effect", step.effect},
+          {"terms", step.terms},
+          {"held_out_nmse_before", step.held_out_before},
+          {"held_out_nmse_after", step.held_out_after},
+          {"parameters", parameters_json(step.parameters)},
+          {"evidence", {{"gain", step.gain}, {"block_t", step.block_t}}},
+          {"runners_up", runners_up}};
+}
+
+Json validated_json(const RigValidated& v) {
+  Json out{{"record", v.record},
+           {"rrse_before", v.rrse_before},
+           {"rrse_after", v.rrse_after},
+           {"nmse_before", v.rrse_before * v.rrse_before},
+           {"nmse_after", v.rrse_after * v.rrse_after},
+           {"start_slip_m", v.start_m}};
+  if (!v.has_reference) return out;
+  out["rrse_reference"] = v.reference_rrse;
+  out["rrse_after_where_reference"] = v.same_rows_rrse;
+  return out;
+}
+
+std::string lines_of(const std::vector<Parameter>& parameters) {
+  std::string text;
+  for (const Parameter& p : parameters) {
+    const QuantityText q = format_quantity(p.value, p.std);
+    text += fmt::format("    {:<36} {}{} {}\n", p.name, q.value, q.std.empty() ? "" : " ± " + q.std,
+                        p.unit);
+  }
+  return text;
+}
+
+std::string model_text(const char* name, const RigModel& model) {
+  std::string terms;
+  for (const std::string& term : model.terms) terms += (terms.empty() ? "" : ", ") + term;
+  return fmt::format("{:<6} held-out rrse {:.3f} ({:.3f} in the mean of the records): {}\n", name,
+                     std::sqrt(model.fit.held_out_nmse), mean_rrse(model.fit), terms);
+}
+
+}  // namespace
+
+const char* RigExplanation::verdict() const {
+  const bool little = final.fit.held_out_nmse < kLittle;
+  if (steps.empty()) return little ? "complete" : "unexplained";
+  return little ? "explained" : "partly_explained";
+}
+
+std::string to_json(const RigExplanation& e) {
+  Json steps = Json::array();
+  for (const RigStep& step : e.steps) steps.push_back(step_json(step));
+  Json validation = Json::array();
+  for (const RigValidated& v : e.validation) validation.push_back(validated_json(v));
+  const Json json{{"verdict", e.verdict()},
+                  {"base", model_json(e.base, e.records)},
+                  {"steps", steps},
+                  {"final", model_json(e.final, e.records)},
+                  {"floor_nmse", nullptr},
+                  {"held_out", e.whole_records ? "records" : "blocks"},
+                  {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
+                  {"validation", validation},
+                  {"faults", Json::array()},
+                  {"signature", Json::object()}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string summarize(const RigExplanation& e) {
+  std::string text = fmt::format(
+      "{}: {}\n  held out: {}; what the sensors alone would leave is not known, {} % of the "
+      "variance counts as little\n",
+      e.verdict(),
+      e.steps.empty() ? "no effect of the library improves the model"
+                      : "the model lacked what follows",
+      e.whole_records ? "one whole record at a time" : "interleaved blocks, five folds",
+      100.0 * RigExplanation::kLittle);
+  if (e.filter_hz > 0.0)
+    text += fmt::format("  errors of force and model behind the same filter, -3 dB at {:.4g} Hz\n",
+                        e.filter_hz);
+  text += model_text("base", e.base) + lines_of(e.base.parameters);
+  for (const RigStep& step : e.steps) {
+    text +=
+        fmt::format("+ {}: held-out rrse {:.3f} -> {:.3f}, t {:.1f}\n", step.effect,
+                    std::sqrt(step.held_out_before), std::sqrt(step.held_out_after), step.block_t);
+    text += lines_of(step.parameters);
+    for (const auto& [effect, nmse] : step.runners_up)
+      text += fmt::format("    {:<36} {} {:.3f}\n", "runner-up", effect, std::sqrt(nmse));
+  }
+  text += model_text("final", e.final);
+  for (const RigValidated& v : e.validation) {
+    text += fmt::format("never fitted: {}: rrse {:.3f} -> {:.3f}", v.record, v.rrse_before,
+                        v.rrse_after);
+    if (v.has_reference)
+      text += fmt::format("; where there is a reference {:.3f}, the reference {:.3f}",
+                          v.same_rows_rrse, v.reference_rrse);
+    text += fmt::format(" (slip at the start {:.1f} mm, from the first second of force)\n",
+                        1e3 * v.start_m);
+  }
+  return text;
+}
+
+std::string prediction_csv(const RigExplanation& e) {
+  if (e.validation.empty()) return "";
+  std::string text = "record,time_s,measured_n,predicted_n,residual_n\n";
+  for (std::size_t r = 0; r < e.validation.size(); ++r) {
+    const RigValidated& v = e.validation[r];
+    for (std::size_t i = 0; i < v.time_s.size(); ++i)
+      text += fmt::format("{},{:.6f},{:.6g},{:.6g},{:.6g}\n", r + 1, v.time_s[i], v.measured_n[i],
+                          v.predicted_n[i], v.measured_n[i] - v.predicted_n[i]);
+  }
+  return text;
+}
+
+}  // namespace dampline::app

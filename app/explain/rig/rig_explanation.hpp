@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/explain/rig/rig_evidence.hpp"
+#include "app/run/result.hpp"
+
+namespace dampline::app {
+
+/// One effect that was added to a rig's force.
+struct RigStep {
+  std::string effect;
+  std::vector<std::string> terms;  ///< of the model with it
+  double held_out_before{0.0};     ///< nmse
+  double held_out_after{0.0};
+  double gain{0.0};     ///< beside a constant and a spring, which every comparison carries
+  double block_t{0.0};  ///< mean over deviation of the mean of the blocks' improvements
+  std::vector<Parameter> parameters;
+  std::vector<std::pair<std::string, double>> runners_up;  ///< effect, held-out nmse
+};
+
+/// A model of the force: which columns, their coefficients.
+struct RigModel {
+  std::vector<std::string> terms;
+  std::vector<RigColumn> columns;
+  RigFit fit;
+  std::vector<Parameter> parameters;
+};
+
+/// Errors on a record that was never fitted. The force sets nothing but the slip at the start,
+/// from the first second.
+struct RigValidated {
+  std::string record;
+  double rrse_before{0.0};
+  double rrse_after{0.0};
+  double start_m{0.0};
+  bool has_reference{false};
+  double reference_rrse{0.0};  ///< over the samples that the reference has
+  double same_rows_rrse{0.0};  ///< of the final model over the same samples
+  std::vector<double> time_s, measured_n, predicted_n;
+};
+
+struct RigExplanation {
+  std::vector<std::string> records;
+  RigModel base;
+  RigModel final;
+  std::vector<RigStep> steps;
+  std::vector<RigValidated> validation;
+  double filter_hz{0.0};  ///< corner of the test function; 0: none
+  bool whole_records{false};
+  /// What the sensors alone would leave is not known: kLittle decides.
+  [[nodiscard]] const char* verdict() const;
+  static constexpr double kLittle = 0.01;  ///< held-out nmse
+};
+
+/// As explanation.json holds it.
+[[nodiscard]] std::string to_json(const RigExplanation& explanation);
+/// For a terminal.
+[[nodiscard]] std::string summarize(const RigExplanation& explanation);
+/// prediction.csv: record, time_s, measured, predicted, residual. Empty without validation.
+[[nodiscard]] std::string prediction_csv(const RigExplanation& explanation);
+
+}  // namespace dampline::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/explain/rig/rig_explanation.hpp"
+#include "app/explain/rig/rig_library.hpp"
+
+namespace dampline::app {
+
+/// Looks for what a rig's base model lacks: every effect in its smallest form, beside a constant
+/// and a spring; the best is added while it helps on what was held out, then each is tried without;
+/// a memory of the friction is refined to a bank of stop operators.
+class RigSearch {
+ public:
+  RigSearch(const Config& config, const std::vector<RigSeries>& records);
+  [[nodiscard]] RigExplanation run();
+
+ private:
+  struct Chosen {
+    RigCandidate candidate;
+    RigStep step;
+    double ridge{0.0};
+  };
+  struct Judged {
+    RigFit fit;
+    std::size_t width{0};
+  };
+
+  [[nodiscard]] ColumnSet set_of(const ColumnSet& more, std::size_t width) const;
+  [[nodiscard]] Judged judge(const ColumnSet& more) const;
+  [[nodiscard]] ColumnSet chosen_columns() const;
+  [[nodiscard]] double ridge() const;
+  [[nodiscard]] bool can_add(const RigCandidate& candidate) const;
+  [[nodiscard]] std::vector<std::string> terms() const;
+  bool forward();
+  void backward();
+  void refine(Chosen& memory);
+  void try_linear(bool& added);
+  [[nodiscard]] bool filtered() const;
+  void describe(RigModel& model, const Judged& judged, const ColumnSet& more) const;
+  void describe_bank(Chosen& chosen, const Judged& now) const;
+  void describe_small(Chosen& chosen, const Estimate& first) const;
+  void describe_sides(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
+  void describe_steps(const Judged& now);
+
+  const std::vector<RigSeries>& records_;
+  RigScale scale_;
+  RigLibrary library_;
+  std::unique_ptr<RigEvidence> evidence_;
+  std::vector<Chosen> chosen_;
+  std::vector<BankElement> bank_;  ///< in use
+  bool base_friction_left_{true};  ///< the base's friction stays beside the bank
+  bool spring_added_{false};
+  bool mass_added_{false};
+};
+
+}  // namespace dampline::app

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "app/config/config.hpp"
+#include "dampline/rig/rig_config.hpp"
+
+namespace dampline::app {
+
+/// A rig's record in memory: motion and force at a uniform rate. Samples that are no number are
+/// left out; over a gap the motion goes on.
+struct RigSeries {
+  std::string record;
+  double interval_s{0.0};
+  bool has_gap{false};
+  RigConfig config;  ///< test function and derivative, as the record's noise permits
+  Eigen::VectorXd time_s;
+  Eigen::VectorXd deflection_m;
+  Eigen::VectorXd velocity_mps;
+  Eigen::VectorXd force_n;
+  Eigen::VectorXd reference_n;  ///< another prediction of the force, NaN where there is none; empty
+  double noise_m{0.0};          ///< of the deflection, rms
+  double start_m{0.0};          ///< slip of all friction elements at the first sample
+
+  [[nodiscard]] Eigen::Index size() const { return force_n.size(); }
+};
+
+/// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
+/// naming the file, what was found and what was expected.
+[[nodiscard]] RigSeries read_rig_series(const std::string& path, const Config& config,
+                                        bool skip_bad_lines,
+                                        const std::string& reference_column = {});
+
+}  // namespace dampline::app

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// Rigs whose force is known: laws written anew here, in other shapes than the candidates', at
+// lengths and speeds between the grids.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "app/explain/rig/explain_rig.hpp"
+#include "tests/drivers/temporary_file.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kRateHz = 500.0;
+constexpr double kLengthS = 60.0;
+constexpr int kFine = 20;  // steps per sample of laws with memory
+
+struct Motion {
+  double deflection_m;
+  double velocity_mps;
+};
+
+Motion motion_at(double t) {
+  Motion out{0.0, 0.0};
+  const double tones[][3] = {{0.006, 0.43, 0.0}, {0.004, 1.17, 1.0}, {0.0015, 2.9, 2.0}};
+  for (const auto& [amplitude, hz, phase] : tones) {
+    const double w = 2.0 * M_PI * hz;
+    out.deflection_m += amplitude * std::sin(w * t + phase);
+    out.velocity_mps += amplitude * w * std::cos(w * t + phase);
+  }
+  return out;
+}
+
+double sign(double v) { return v < 0.0 ? -1.0 : 1.0; }
+
+/// Takes the motion in fine steps, with its own memory.
+using Law = std::function<double(const Motion&, double step_m)>;
+
+std::string record_of(Law law, std::uint64_t seed) {
+  std::mt19937_64 random{seed};
+  std::normal_distribution<double> noise;
+  std::string text = "time_s,deflection_m,force_n\n";
+  double last_m = motion_at(0.0).deflection_m;
+  for (int i = 0; i < static_cast<int>(kRateHz * kLengthS); ++i) {
+    double force_n = 0.0;
+    Motion motion{};
+    for (int k = 1; k <= kFine; ++k) {
+      motion = motion_at((i + static_cast<double>(k) / kFine) / kRateHz);
+      force_n = law(motion, motion.deflection_m - last_m);
+      last_m = motion.deflection_m;
+    }
+    text += fmt::format("{:.6f},{:.9f},{:.4f}\n", i / kRateHz,
+                        motion.deflection_m + 2e-7 * noise(random), force_n + 3.0 * noise(random));
+  }
+  return text;
+}
+
+Law simple() {
+  return
+      [](const Motion& m, double) { return 300.0 * sign(m.velocity_mps) + 900.0 * m.velocity_mps; };
+}
+
+/// d z / d x = (1 - z sign x')^2 / r: softer than Dahl's plain law and than a stop.
+Law presliding(double r) {
+  return [r, z = 0.0](const Motion& m, double step_m) mutable {
+    const double left = 1.0 - z * sign(m.velocity_mps);
+    z += step_m * left * left / r;
+    return 300.0 * z + 900.0 * m.velocity_mps;
+  };
+}
+
+/// A friction element that is driven over a pin in a slot.
+Law backlash(double gap_m) {
+  return [gap_m, pin_m = 0.0, stretch_m = 0.0](const Motion& m, double step_m) mutable {
+    pin_m += step_m;
+    const double before_m = pin_m;
+    pin_m = std::clamp(pin_m, -0.5 * gap_m, 0.5 * gap_m);
+    const double carried_m = before_m - pin_m;
+    stretch_m = std::clamp(stretch_m + carried_m, -1e-4, 1e-4);
+    const bool free = std::abs(pin_m) < 0.5 * gap_m;
+    if (free) stretch_m = 0.0;
+    return 300.0 * stretch_m / 1e-4 + 900.0 * m.velocity_mps;
+  };
+}
+
+struct Planted {
+  const char* effect;
+  Law law;
+  bool spring;
+};
+
+RigExplanation explained(const Law& law, bool spring, std::uint64_t seed) {
+  const dampline::testing::TemporaryFile file{record_of(law, seed), ".csv"};
+  Config config;
+  config.model.base = {"coulomb", "viscous"};
+  config.model.stiffness = spring ? "identify" : "auto";
+  return explain_rig(config, {{file.path()}, {}, "", false});
+}
+
+class NamesOnARig : public ::testing::TestWithParam<Planted> {};
+
+TEST_P(NamesOnARig, WhatWasPlanted) {
+  const RigExplanation found = explained(GetParam().law, GetParam().spring, 17);
+  ASSERT_FALSE(found.steps.empty());
+  EXPECT_EQ(found.steps[0].effect, GetParam().effect) << summarize(found);
+  EXPECT_EQ(found.steps.size(), 1U) << summarize(found);
+  EXPECT_LT(found.final.fit.held_out_nmse, 0.5 * found.base.fit.held_out_nmse);
+}
+
+double spring(const Motion& m) { return 9000.0 * m.deflection_m; }
+
+INSTANTIATE_TEST_SUITE_P(
+    Laws, NamesOnARig,
+    ::testing::Values(
+        Planted{"presliding_hysteresis", presliding(0.0011), false},
+        Planted{"backlash", backlash(0.0037), false},
+        Planted{"offset_force", [](const Motion& m, double s) { return simple()(m, s) - 70.0; },
+                false},
+        Planted{"asymmetric_viscous",
+                [](const Motion& m, double s) {
+                  return simple()(m, s) + (m.velocity_mps > 0.0 ? 2500.0 * m.velocity_mps : 0.0);
+                },
+                false},
+        Planted{"quadratic_damping",
+                [](const Motion& m, double s) {
+                  return simple()(m, s) + 6.0e4 * m.velocity_mps * std::abs(m.velocity_mps);
+                },
+                false},
+        Planted{"stribeck",
+                [](const Motion& m, double) {
+                  const double u = m.velocity_mps / 0.0083;
+                  return sign(m.velocity_mps) * (300.0 + 180.0 * std::exp(-u * u)) +
+                         900.0 * m.velocity_mps;
+                },
+                false},
+        Planted{"cubic_stiffness",
+                [](const Motion& m, double s) {
+                  const double x = m.deflection_m;
+                  return simple()(m, s) + spring(m) + 1.7e8 * x * x * x;
+                },
+                true},
+        Planted{"bump_stop",
+                [](const Motion& m, double s) {
+                  const double over = std::max(std::abs(m.deflection_m) - 0.0067, 0.0);
+                  return simple()(m, s) + spring(m) + 9.0e4 * over * sign(m.deflection_m);
+                },
+                true}),
+    [](const ::testing::TestParamInfo<Planted>& tested) {
+      return std::string{tested.param.effect};
+    });
+
+TEST(ARig, LacksNothingWhereNothingIsMissing) {
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+    const RigExplanation found = explained(simple(), false, seed);
+    EXPECT_TRUE(found.steps.empty()) << summarize(found);
+    EXPECT_STREQ(found.verdict(), "complete");
+    EXPECT_LT(found.base.fit.held_out_nmse, 0.01);
+  }
+}
+
+TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
+  // A force that has nothing to do with the motion.
+  const RigExplanation found = explained(
+      [law = simple(), i = 0](const Motion& m, double s) mutable {
+        ++i;
+        return law(m, s) + 150.0 * std::sin(0.01131 * i) * std::sin(0.000377 * i * std::sqrt(i));
+      },
+      false, 31);
+  EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
+}
+
+TEST(ARig, IsPredictedFromItsMotionAlone) {
+  const dampline::testing::TemporaryFile fitted{record_of(backlash(0.0037), 41), ".csv"};
+  const dampline::testing::TemporaryFile other{record_of(backlash(0.0037), 42), ".csv"};
+  // The same motion with the force wiped out after the first second gives the same prediction.
+  std::string wiped = record_of(backlash(0.0037), 42);
+  std::string kept;
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < wiped.size(); ++line) {
+    const std::size_t end = wiped.find('\n', at);
+    const std::string row = wiped.substr(at, end - at);
+    kept += line > 600 ? row.substr(0, row.rfind(',')) + ",1.0\n" : row + "\n";
+    at = end + 1;
+  }
+  const dampline::testing::TemporaryFile without{kept, ".csv"};
+  Config config;
+  config.model.base = {"coulomb", "viscous"};
+  const RigExplanation found =
+      explain_rig(config, {{fitted.path()}, {other.path(), without.path()}, "", false});
+  ASSERT_EQ(found.validation.size(), 2U);
+  EXPECT_LT(found.validation[0].rrse_after, 0.5 * found.validation[0].rrse_before);
+  EXPECT_EQ(found.validation[0].predicted_n, found.validation[1].predicted_n);
+  EXPECT_NE(prediction_csv(found).find("record,time_s,measured_n,predicted_n,residual_n\n1,"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace dampline::app
