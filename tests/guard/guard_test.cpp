@@ -24,6 +24,7 @@ struct Trial {
   sim::RecordFaultConfig faults;
   GuardConfig guard;
   double length_s{150.0};
+  bool step_is_declared{true};
 };
 
 std::unique_ptr<Guard> run(const std::function<void(Trial&)>& change) {
@@ -36,7 +37,7 @@ std::unique_ptr<Guard> run(const std::function<void(Trial&)>& change) {
   s.guard.leading = Leading::kWheelset1;
   s.guard.noise_mps2.fill(s.simulation.sensors.noise_mps2);
   change(s);
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  for (std::size_t c = 0; s.step_is_declared && c < kChannels; ++c) {
     s.guard.step_mps2[c] = sim::count_scale_mps2(s.simulation.sensors.range_mps2[c]);
   }
   auto guard = std::make_unique<Guard>(Guard::check(s.guard).value());
@@ -132,6 +133,15 @@ TEST(Guard, MeasuresAGainStep) {
   const Fault& fault = only(*guard);
   EXPECT_STREQ(name_of(fault.kind), "gain_change");
   EXPECT_NEAR(fault.size, 3.0, 0.5);
+}
+
+TEST(Guard, LearnsTheResolutionThatNobodyDeclared) {
+  EXPECT_THAT(names(*run([](Trial& s) { s.step_is_declared = false; })), IsEmpty());
+  EXPECT_THAT(names(*run([](Trial& s) {
+                s.step_is_declared = false;
+                s.simulation.sensors.limit_mps2[1] = 5.0;
+              })),
+              Contains("clipping wheelset1"));
 }
 
 TEST(Guard, NamesWhatIsWrongWithTheCodesOfAChannel) {

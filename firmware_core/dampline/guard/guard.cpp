@@ -9,7 +9,7 @@ namespace dampline {
 namespace {
 
 constexpr double kNoNumberMps2 = 1e6;
-constexpr double kUnknownStepMps2 = 1e-4;  // codes are made of this where the step is unknown
+constexpr double kUnknownStepMps2 = 1e-4;  // the least unit of a code that nobody declared
 constexpr double kStuckS = 0.2;            // clean records hold a code for 10 samples at most
 constexpr std::int64_t kOthersMove = 8;    // codes that another channel spans meanwhile
 constexpr std::uint64_t kFewSaturated = 3;
@@ -72,6 +72,7 @@ void Guard::update(const Sample& sample) noexcept {
       ++no_numbers_;
       return;
     }
+    if (!knows_steps_) steps_[c].update(sample.accel_mps2[c]);
     codes[c] = std::llround(sample.accel_mps2[c] / unit(c));
   }
   if (!any_) {
@@ -104,10 +105,7 @@ void Guard::take_gap(const Sample& sample) noexcept {
                  static_cast<double>(lost));
     book_.spoil(FaultKind::kLostSamples, last_.tick, sample.tick);
   }
-  if (missing > kBridged) {
-    restart();
-    return;
-  }
+  if (missing > kBridged) return restart();
   for (SpikeWatch& watch : spikes_) watch.restart();
   repeats_.restart();
   const auto length = static_cast<double>(missing + 1);
@@ -121,6 +119,20 @@ void Guard::take_gap(const Sample& sample) noexcept {
     wheelsets_.update(last_.tick + i, between[1], between[2], book_);
   }
   wheelsets_.strike(sample.tick);
+}
+
+// What was counted in other codes is forgotten.
+void Guard::use_learned_steps() noexcept {
+  knows_steps_ = true;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (config_.step_mps2[c] > 0.0) continue;
+    knows_steps_ = knows_steps_ && steps_[c].step() > 0.0;
+    unit_mps2_[c] = std::max(steps_[c].step(), kUnknownStepMps2);
+    codes_[c] = CodeWatch{};
+    spikes_[c] = SpikeWatch{ticks_of(2.0, config_.sample_rate_hz)};
+    runs_[c] = {};
+  }
+  repeats_.restart();
 }
 
 void Guard::restart() noexcept {
@@ -251,6 +263,7 @@ void Guard::take_code_verdict(std::size_t channel, std::int64_t tick) noexcept {
 }
 
 void Guard::close_block(std::int64_t tick) noexcept {
+  if (!knows_steps_) use_learned_steps();
   for (std::size_t c = 0; c < kChannels; ++c) {
     take_code_verdict(c, tick);
     judge_spikes(c);

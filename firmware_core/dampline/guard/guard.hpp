@@ -12,6 +12,7 @@
 #include "dampline/guard/repeat_watch.hpp"
 #include "dampline/guard/spectral_guard.hpp"
 #include "dampline/guard/spike_watch.hpp"
+#include "dampline/guard/step_meter.hpp"
 #include "dampline/guard/wheelset_watch.hpp"
 #include "dampline/result.hpp"
 #include "dampline/sample/sample.hpp"
@@ -79,11 +80,14 @@ class Guard {
   void judge_spikes(std::size_t channel) noexcept;
   void close_block(std::int64_t tick) noexcept;
   void judge_time(const Sample& sample) noexcept;
+  void use_learned_steps() noexcept;
   void take_code_verdict(std::size_t channel, std::int64_t tick) noexcept;
   [[nodiscard]] double unit(std::size_t channel) const noexcept { return unit_mps2_[channel]; }
 
   GuardConfig config_;
   std::array<double, kChannels> unit_mps2_{};  // of a code
+  std::array<StepMeter, kChannels> steps_{};
+  bool knows_steps_{false};
   std::int64_t block_ticks_;
   std::int64_t stuck_ticks_;
   FaultBook book_;
