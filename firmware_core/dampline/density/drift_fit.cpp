@@ -13,6 +13,7 @@ constexpr int kMaxUnknowns = 2 * (static_cast<int>(kCurveSegments) + 1);
 constexpr int kMaxTests = 2 * static_cast<int>(DriftBins::kPerSide) + 1;
 constexpr double kMinShare = 0.01;  // of the samples, beyond a segment's left end on one side
 constexpr double kMinSamples = 60.0;
+constexpr double kBend = 0.1;  // of the level: how far a node is from its neighbours' line
 
 /// A function that is linear in u within a bin: at u = 0, and per u.
 struct Line {
@@ -122,6 +123,31 @@ bool solve_curve(const Normal& normal, std::size_t segments, DriftFit& fit) noex
   return true;
 }
 
+/// Each inner node's departure from the line through its neighbours is expected to be
+/// `departure_mps2`; `noise` is the variance of the equations' errors over their weight.
+void expect_little_bend(const DriftBins& bins, std::size_t segments, double departure_mps2,
+                        double noise, Normal& normal) noexcept {
+  const double information = noise / (departure_mps2 * departure_mps2);
+  const auto& ends = bins.nodes_mps();
+  const auto place = [&](std::size_t node) { return ends[node == 0 ? 0 : node + 1]; };
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (std::size_t node = 1; node < segments; ++node) {
+      const double before = place(node) - place(node - 1);
+      const double after = place(node + 1) - place(node);
+      const std::array<double, 3> departure{-after / (before + after), 1.0,
+                                            -before / (before + after)};
+      const int first = static_cast<int>(side * (segments + 1) + node) - 1;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          normal.matrix(first + i, first + j) += information *
+                                                 departure[static_cast<std::size_t>(i)] *
+                                                 departure[static_cast<std::size_t>(j)];
+        }
+      }
+    }
+  }
+}
+
 void add_bin(const DriftMoments& m, const Lines& tests, const Lines& curve, double beta,
              double per_bin, Equations& out) noexcept {
   for (const Line& g : tests) {
@@ -189,7 +215,7 @@ std::size_t supported_segments(const DriftSums& sums) noexcept {
 }
 
 DriftFit fit_weak_form(const DriftSums& sums, const DriftBins& bins, double beta,
-                       double input_level, std::size_t segments) noexcept {
+                       double input_level, double sample_rate_hz, std::size_t segments) noexcept {
   DriftFit fit{.segments = segments};
   if (segments == 0) return fit;
   const DriftSums all = folded(sums, bins, segments);
@@ -204,8 +230,10 @@ DriftFit fit_weak_form(const DriftSums& sums, const DriftBins& bins, double beta
   }
   const int unknowns = 2 * (static_cast<int>(segments) + 1);
   Normal normal;
-  fit.ok = reduce(equations, unknowns + 1, unknowns, normal) &&
-           solve_level(normal, unknowns, fit) && solve_curve(normal, segments, fit);
+  fit.ok = reduce(equations, unknowns + 1, unknowns, normal) && solve_level(normal, unknowns, fit);
+  if (!fit.ok) return fit;
+  expect_little_bend(bins, segments, kBend * fit.level_mps2, input_level * sample_rate_hz, normal);
+  fit.ok = solve_curve(normal, segments, fit);
   return fit;
 }
 

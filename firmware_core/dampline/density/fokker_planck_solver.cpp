@@ -96,7 +96,8 @@ FokkerPlanckSolution FokkerPlanckSolver::from_fit(const DriftFit& fit) const noe
 
 FokkerPlanckSolution FokkerPlanckSolver::solve_weak(std::size_t left_out) const noexcept {
   const FokkerPlanck::Group sums = without(left_out);
-  return from_fit(fit_weak_form(sums.all, data_.bins_, beta_, level_of(sums.input), segments_));
+  return from_fit(fit_weak_form(sums.all, data_.bins_, beta_, level_of(sums.input),
+                                data_.config_.sample_rate_hz, segments_));
 }
 
 FokkerPlanckSolution FokkerPlanckSolver::solve_known(std::size_t left_out) const noexcept {
