@@ -15,7 +15,7 @@ std::string with_unit(double value, const std::string& unit) {
 std::string objections_of(const MethodSummary& method) {
   std::string out;
   for (const Objection& o : method.objections)
-    out += fmt::format("<li>{}: {}, tolerated {}</li>", escape_html(o.reason),
+    out += fmt::format("<li>{}: {}, limit {}</li>", escape_html(o.reason),
                        escape_html(with_unit(o.size, o.unit)),
                        escape_html(with_unit(o.limit, o.unit)));
   return out.empty() ? "" : "<ul>" + out + "</ul>";

@@ -12,7 +12,7 @@ namespace dampline::app {
 struct Objection {
   std::string reason;  ///< a plain sentence
   double size{0.0};    ///< of the violation
-  double limit{0.0};   ///< what would have been tolerated
+  double limit{0.0};   ///< the most, or the least, that the method can stand
   std::string unit;    ///< of both; empty: a pure number
 };
 

@@ -34,9 +34,9 @@ std::string verdict_on(const MethodSummary& method) {
   if (method.trusted) return "can be trusted here";
   std::string out = "not to be trusted here";
   for (const Objection& o : method.objections)
-    out += fmt::format("{} {}: {:.3g}{}{}, tolerated {:.3g}",
-                       &o == method.objections.data() ? ":" : ";", o.reason, o.size,
-                       o.unit.empty() ? "" : " ", o.unit, o.limit);
+    out +=
+        fmt::format("{} {}: {:.3g}{}{}, limit {:.3g}", &o == method.objections.data() ? ":" : ";",
+                    o.reason, o.size, o.unit.empty() ? "" : " ", o.unit, o.limit);
   return out;
 }
 

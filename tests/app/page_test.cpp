@@ -50,7 +50,7 @@ TEST(Page, HoldsEverythingAndNeedsNothingElse) {
 TEST(Page, ShowsAMethodThatIsNotToBeTrustedInGreyWithTheReason) {
   const std::string html = make_page(fake_result(), some_provenance(), "").html;
   EXPECT_THAT(html, AllOf(HasSubstr("<tr class=\"grey\"><td>Fokker-Planck, weak form"),
-                          HasSubstr("&lt;comb&gt;: 14.2 dB, tolerated 6 dB"),
+                          HasSubstr("&lt;comb&gt;: 14.2 dB, limit 6 dB"),
                           HasSubstr("<tr><td>known input"), HasSubstr("-0.7 %")));
 }
 
@@ -108,8 +108,7 @@ TEST(Summary, ListsParametersFitAndWhatWasLeftOut) {
       summarize(fake_result()),
       AllOf(HasSubstr("coulomb"), HasSubstr("8351 ± 14"), HasSubstr("N/m"), HasSubstr("rrse 0.106"),
             HasSubstr("6.1 s (gap)"), HasSubstr("not observable"),
-            HasSubstr(
-                "not to be trusted here: the input is not white: <comb>: 14.2 dB, tolerated 6")));
+            HasSubstr("not to be trusted here: the input is not white: <comb>: 14.2 dB, limit 6")));
 }
 
 }  // namespace
