@@ -113,7 +113,7 @@ void BlockSurvey::power(std::size_t k) noexcept {
     const double gamma2 = std::min(coherence(b.aligned[k], b.delayed1[k], b.wheelset2[k]), 1.0);
     if (gamma2 > kCoherent) s_.coherent += 1.0;
     weights_[k] = std::min(gamma2 / (1.0 - gamma2 + kTiny), kMostWeight);
-    s_.phase += weights_[k] * hz(k) * std::arg(b.aligned[k]);
+    s_.phase += weights_[k] * hz(k) * phase_of(b.aligned[k]);
     s_.phase_weight += weights_[k] * hz(k) * hz(k);
     s_.log_ratio += 0.5 * std::log((b.delayed1[k] + kTiny) / (b.wheelset2[k] + kTiny));
     s_.power1 += b.delayed1[k];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <complex>
 #include <cstddef>
 
@@ -35,5 +36,10 @@ class Fourier512 {
   std::array<Complex, kSize> x_{};
   std::size_t done_{0};
 };
+
+/// Radians, -pi ... pi. The complex library's own is a call that a microcontroller may lack.
+[[nodiscard]] inline double phase_of(const std::complex<double>& z) noexcept {
+  return std::atan2(z.imag(), z.real());
+}
 
 }  // namespace dampline

@@ -53,7 +53,7 @@ void LagTracker::add_phase(std::size_t k, const Bin& bin) noexcept {
   const double weight = coherence / (1.0 - coherence);
   const Complex product = turned(k, static_cast<double>(lag_samples_) / rate_hz_,
                                  times(bin.cross, std::conj(reference_[k])));
-  phase_ += weight * hz(k) * std::arg(product);
+  phase_ += weight * hz(k) * phase_of(product);
   weight_ += weight * hz(k) * hz(k);
 }
 

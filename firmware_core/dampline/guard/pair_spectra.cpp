@@ -153,7 +153,7 @@ void PairSpectra::add_bin(std::size_t k) noexcept {
   sums.frame_to[1][k] += cross(two, frame);
   if (const double weight = weights_[k]; weight > 0.0) {
     const double f_hz = static_cast<double>(k) * rate_hz_ / static_cast<double>(kSegment);
-    phase_sum_ += weight * f_hz * std::arg(aligned);
+    phase_sum_ += weight * f_hz * phase_of(aligned);
     weight_sum_ += weight * f_hz * f_hz;
   }
 }
