@@ -22,7 +22,7 @@ struct Seeds {
 
 const char* name_of(sim::Load load) { return load == sim::Load::kLaden ? "laden" : "empty"; }
 
-std::string percent(const Errors& e) {
+std::string percent(const Spread& e) {
   return fmt::format("{:+.1f} +- {:.1f} %", 100.0 * e.mean(), 100.0 * e.std());
 }
 
@@ -54,7 +54,7 @@ void print_white_errors(const Seeds& seeds) {
     Tallies all;
     for (std::uint64_t i = 0; i < seeds.count; ++i) {
       const auto data = run(White{.load = load}, seeds.first + i);
-      tally(*data, truck_of(load), true, all);
+      tally(*data, sim::truck_of(load), true, all);
     }
     for (std::size_t form = 0; form < kForms; ++form) {
       const Tally& t = all[form];
@@ -72,10 +72,10 @@ void print_divergence(const Seeds& seeds) {
       "the functional at alpha = 0, level error mean +- sd:\n\n"
       "| bandwidth, mm/s | J | level, v = 0 left in | level, without 3 bandwidths |\n"
       "|--|--|--|--|\n");
-  const sim::TruckConfig truck = truck_of(sim::Load::kLaden);
+  const sim::TruckConfig truck = sim::truck_of(sim::Load::kLaden);
   constexpr std::array<double, 5> kBandwidthsMps{4.0e-3, 2.0e-3, 1.0e-3, 0.5e-3, 0.25e-3};
   struct Row {
-    Errors functional, whole, without;
+    Spread functional, whole, without;
   };
   std::array<Row, kBandwidthsMps.size()> rows;
   for (std::uint64_t i = 0; i < seeds.count; ++i) {
@@ -110,7 +110,7 @@ Verdicts print_white_verdicts(const Seeds& seeds) {
         const White white{load, rms_mps, seconds, false};
         Tallies all;
         for (std::uint64_t i = 0; i < seeds.count; ++i)
-          tally(*run(white, seeds.first + 500 + i), truck_of(load), false, all);
+          tally(*run(white, seeds.first + 500 + i), sim::truck_of(load), false, all);
         fmt::print("| {} | {:.0f} | {:.0f} |", name_of(load), 1e3 * rms_mps, seconds);
         for (const Tally& t : all) fmt::print(" {} |", share(t.trusted, t.runs));
         for (const Tally& t : all) fmt::print(" {:.1f} % |", 100.0 * t.level.worst());
@@ -146,7 +146,7 @@ Verdicts print_track(const Seeds& seeds, double& worst_known) {
   Verdicts out;
   for (const Ride& ride : rides()) {
     Tallies all;
-    const sim::TruckConfig truck = truck_of(ride.load);
+    const sim::TruckConfig truck = sim::truck_of(ride.load);
     for (std::uint64_t i = 0; i < seeds.count; ++i)
       tally(run(ride, seeds.first + i)->fokker_planck(), truck, false, all);
     const char* track = ride.amplitude_m_rad == sim::kTrackAmplitudeHigh ? "poor" : "good";

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/curve_error.hpp"
+#include "bench/spread.hpp"
 #include "dampline/methods.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
@@ -25,61 +27,18 @@ inline const MethodResult& of(const FokkerPlanckEstimates& found, std::size_t fo
   return form == kPaper ? found.paper : found.known_input;
 }
 
-/// Mean, scatter and worst of signed relative errors.
-class Errors {
- public:
-  void add(double x) {
-    n_ += 1.0;
-    const double delta = x - mean_;
-    mean_ += delta / n_;
-    squares_ += delta * (x - mean_);
-    worst_ = std::max(worst_, std::abs(x));
-  }
-  [[nodiscard]] double mean() const { return mean_; }
-  [[nodiscard]] double std() const { return n_ > 1.0 ? std::sqrt(squares_ / (n_ - 1.0)) : 0.0; }
-  [[nodiscard]] double worst() const { return worst_; }
-  [[nodiscard]] int count() const { return static_cast<int>(n_); }
-
- private:
-  double n_{0.0}, mean_{0.0}, squares_{0.0}, worst_{0.0};
-};
-
 /// What one form did over several runs.
 struct Tally {
-  Errors level;  ///< relative; of the runs with a number
-  Errors curve;  ///< relative distance of the curve over |v| > 3 mm/s
-  Errors sigma;  ///< error of the level over its stated deviation
+  Spread level;  ///< relative; of the runs with a number
+  Spread curve;  ///< relative distance of the curve over |v| > 3 mm/s
+  Spread sigma;  ///< error of the level over its stated deviation
   int runs{0};
   int trusted{0};
 };
 using Tallies = std::array<Tally, kForms>;
 
-inline sim::TruckConfig truck_of(sim::Load load) {
-  return load == sim::Load::kLaden ? sim::laden_truck() : sim::empty_truck();
-}
 inline double level_of(const sim::TruckConfig& truck) {
   return 0.5 * (truck.friction_positive_n + truck.friction_negative_n);
-}
-
-/// Relative distance of a curve from the two branches, |v| > 3 mm/s, root mean square over the
-/// samples. Both forces are positive numbers.
-inline double curve_error(const MethodResult& result, const VelocityHistogram& velocities,
-                          double positive_n, double negative_n) {
-  double errors = 0.0;
-  double squares = 0.0;
-  for (std::size_t b = 0; b < kVelocityBins; ++b) {
-    const double v = velocities.axis().centre(b);
-    if (std::abs(v) < 3.0e-3) continue;
-    std::size_t right = 1;  // the ends go on
-    while (right + 1 < result.points && result.curve[right].velocity_mps < v) ++right;
-    const CurvePoint& p = result.curve[right - 1];
-    const CurvePoint& q = result.curve[right];
-    const double u = (v - p.velocity_mps) / (q.velocity_mps - p.velocity_mps);
-    const double truth = v > 0.0 ? positive_n : -negative_n;
-    errors += velocities.mass(b) * std::pow(p.force_n + u * (q.force_n - p.force_n) - truth, 2);
-    squares += velocities.mass(b) * truth * truth;
-  }
-  return std::sqrt(errors / squares);
 }
 
 /// `absolute`: the branches themselves are observable, otherwise only half their sum.
@@ -109,7 +68,7 @@ struct White {
 };
 
 inline sim::WhiteInputConfig white_input(const White& white, std::uint64_t seed) {
-  const sim::TruckConfig truck = truck_of(white.load);
+  const sim::TruckConfig truck = sim::truck_of(white.load);
   return {.seed = seed,
           .moving_mass_kg = truck.moving_mass_kg,
           .stiffness_npm = truck.stiffness_npm,

@@ -47,7 +47,7 @@ std::string density_text(const Trucks& trucks, Method method) {
   for (const Found& found : trucks) trusted += found[method].trusted ? 1 : 0;
   const Spread level = over_trucks(trucks, method);
   if (level.count() == 0) return "none";
-  return fmt::format("{:.0f} ({})", level.get().value, trusted);
+  return fmt::format("{:.0f} ({})", level.mean(), trusted);
 }
 
 void print_density_cases(const Results& results) {
@@ -84,9 +84,9 @@ Estimate over_cases(const Results& results, std::size_t model, Method method, bo
   for (std::size_t i = 0; i < results.cases.size(); ++i) {
     if (results.cases[i].laden() != laden) continue;
     const Spread trucks = over_trucks(results.rows[i][model], method);
-    if (trucks.count() > 0) spread.add(trucks.get().value);
+    if (trucks.count() > 0) spread.add(trucks.mean());
   }
-  return spread.get();
+  return {spread.mean(), spread.std()};
 }
 
 struct Line {

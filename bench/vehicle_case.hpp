@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/spread.hpp"
 #include "dampline/density/fokker_planck.hpp"
 #include "dampline/identifier.hpp"
 #include "sim_hw/presets.hpp"
@@ -105,24 +106,6 @@ inline Trucks find_levels(const Case& c, const Model& model, double seconds) {
   return {find_levels(simulation_of(c, model, sim::TruckPosition::kLeading), seconds),
           find_levels(simulation_of(c, model, sim::TruckPosition::kTrailing), seconds)};
 }
-
-/// Mean and standard deviation of what was added.
-class Spread {
- public:
-  void add(double x) {
-    n_ += 1.0;
-    const double delta = x - mean_;
-    mean_ += delta / n_;
-    squares_ += delta * (x - mean_);
-  }
-  [[nodiscard]] Estimate get() const {
-    return {mean_, n_ > 1.0 ? std::sqrt(squares_ / (n_ - 1.0)) : 0.0};
-  }
-  [[nodiscard]] int count() const { return static_cast<int>(n_); }
-
- private:
-  double n_{0.0}, mean_{0.0}, squares_{0.0};
-};
 
 /// A case's level is the mean of its trucks'.
 inline Spread over_trucks(const Trucks& trucks, Method method) {

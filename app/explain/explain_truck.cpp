@@ -5,20 +5,17 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
+#include <string>
 
 #include "app/error.hpp"
 #include "app/explain/fault_veto.hpp"
 #include "app/identify/identify_source.hpp"
-#include "app/identify/progress.hpp"
 #include "app/identify/source_kind.hpp"
 #include "app/identify/truck_run.hpp"
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::app {
 namespace {
-
-constexpr std::size_t kBatch = 4096;
 
 bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -67,22 +64,8 @@ Pass pass_of(const Config& config, const SourceOptions& source, double scale_m,
   pass.run->watch([&diagnosis = *pass.diagnosis](const Sample& sample, const UpdateResult& result) {
     diagnosis.update(sample, result);
   });
-  const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
-  Progress progress{show_progress};
-  std::vector<Sample> samples;
-  samples.reserve(kBatch);
-  for (bool more = true; more;) {
-    samples.clear();
-    more = pass.feed->read(samples);
-    for (const Sample& sample : samples) pass.run->take(sample);
-    if (!progress.due()) continue;
-    const auto share =
-        lines ? std::optional{static_cast<double>(pass.feed->lines()) / *lines} : std::nullopt;
-    progress.show(share, pass.run->time_s(), "");
-  }
-  if (pass.run->empty())
-    throw RunError{fmt::format("{}: holds no complete sample: {}", source.path,
-                               pass.feed->explain_emptiness())};
+  const auto no_state = [](const TruckRun&) { return std::string{}; };
+  pump(*pass.feed, source, show_progress, no_state, *pass.run);
   pass.diagnosis->finish();
   return pass;
 }

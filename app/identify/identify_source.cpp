@@ -10,7 +10,6 @@
 #include "app/error.hpp"
 #include "app/identify/progress.hpp"
 #include "app/identify/source_kind.hpp"
-#include "app/identify/truck_run.hpp"
 #include "app/rig/csv_rig_source.hpp"
 #include "app/rig/identify_rig.hpp"
 
@@ -27,31 +26,12 @@ std::string state_text(const TruckRun& run) {
                      1e-6 * row->stiffness_npm.std);
 }
 
-void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, TruckRun& run) {
-  const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
-  Progress progress{show_progress};
-  std::vector<Sample> samples;
-  samples.reserve(kBatch);
-  for (bool more = true; more;) {
-    samples.clear();
-    more = feed.read(samples);
-    for (const Sample& sample : samples) run.take(sample);
-    if (!progress.due()) continue;
-    const auto share =
-        lines ? std::optional{static_cast<double>(feed.lines()) / *lines} : std::nullopt;
-    progress.show(share, run.time_s(), state_text(run));
-  }
-}
-
 Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
                           bool show_progress) {
   static_cast<void>(identifier_config(config));  // wrong settings before a wrong source
   const auto feed = open_feed(config, source, kind);
   TruckRun run{config, feed->screen()};
-  pump(*feed, source, show_progress, run);
-  if (run.empty())
-    throw RunError{
-        fmt::format("{}: holds no complete sample: {}", source.path, feed->explain_emptiness())};
+  pump(*feed, source, show_progress, state_text, run);
   Identified out;
   out.result = run.finish(feed->rate(), source.path);
   feed->describe(out.result);
@@ -77,6 +57,26 @@ InputFile describe_record(const std::string& path) {
 }
 
 }  // namespace
+
+void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
+          const std::function<std::string(const TruckRun&)>& state, TruckRun& run) {
+  const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
+  Progress progress{show_progress};
+  std::vector<Sample> samples;
+  samples.reserve(kBatch);
+  for (bool more = true; more;) {
+    samples.clear();
+    more = feed.read(samples);
+    for (const Sample& sample : samples) run.take(sample);
+    if (!progress.due()) continue;
+    const auto share =
+        lines ? std::optional{static_cast<double>(feed.lines()) / *lines} : std::nullopt;
+    progress.show(share, run.time_s(), state(run));
+  }
+  if (run.empty())
+    throw RunError{
+        fmt::format("{}: holds no complete sample: {}", source.path, feed.explain_emptiness())};
+}
 
 std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
                                       SourceKind kind) {

@@ -21,8 +21,7 @@ constexpr double kVelocityRmsMps = 8.0e-3;
 using Figures = std::vector<FokkerPlanckFigure>;
 
 sim::WhiteInputConfig white(sim::Load load, std::uint64_t seed) {
-  const sim::TruckConfig truck =
-      load == sim::Load::kLaden ? sim::laden_truck() : sim::empty_truck();
+  const sim::TruckConfig truck = sim::truck_of(load);
   const double level_n = 0.5 * (truck.friction_positive_n + truck.friction_negative_n);
   sim::WhiteInputConfig out;
   out.seed = seed;

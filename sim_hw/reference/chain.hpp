@@ -27,6 +27,13 @@ struct Chain {
   Real stiffness_factor{1};
 };
 
+/// One mass of 1 kg on one element to the ground; an empty input: free.
+[[nodiscard]] inline Chain single(const Element& element, const Input& input) {
+  Chain chain{.mass_kg = {1}, .links = {{Link::kGround, 0, element}}};
+  if (!input.empty()) chain.inputs = {input};
+  return chain;
+}
+
 /// The motion at time 0, one entry per mass; empty: all zero.
 struct Start {
   std::vector<Real> deflection_m{};

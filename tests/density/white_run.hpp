@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bench/curve_error.hpp"
 #include "dampline/density/fokker_planck.hpp"
 #include "sim_hw/white_input.hpp"
 
@@ -21,24 +22,10 @@ inline std::unique_ptr<FokkerPlanck> white_run(const sim::WhiteInputConfig& whit
   return out;
 }
 
-/// Relative distance of a curve from F sign(v), |v| > 3 mm/s, root mean square over the samples.
+/// Relative distance of a curve from F sign(v).
 inline double curve_error(const MethodResult& result, const VelocityHistogram& velocities,
                           double level_n = kLevelN) {
-  double errors = 0.0;
-  double squares = 0.0;
-  for (std::size_t b = 0; b < kVelocityBins; ++b) {
-    const double v = velocities.axis().centre(b);
-    if (std::abs(v) < 3.0e-3) continue;
-    std::size_t right = 1;  // the ends go on
-    while (right + 1 < result.points && result.curve[right].velocity_mps < v) ++right;
-    const CurvePoint& p = result.curve[right - 1];
-    const CurvePoint& q = result.curve[right];
-    const double u = (v - p.velocity_mps) / (q.velocity_mps - p.velocity_mps);
-    const double error = p.force_n + u * (q.force_n - p.force_n) - std::copysign(level_n, v);
-    errors += velocities.mass(b) * error * error;
-    squares += velocities.mass(b) * level_n * level_n;
-  }
-  return std::sqrt(errors / squares);
+  return bench::curve_error(result, velocities, level_n, level_n);
 }
 
 }  // namespace dampline

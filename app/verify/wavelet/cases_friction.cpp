@@ -7,18 +7,11 @@
 namespace dampline::app {
 namespace {
 
-using sim::reference::Chain;
 using sim::reference::Element;
-using sim::reference::Input;
 using sim::reference::Link;
 using sim::reference::Real;
 using sim::reference::Signum;
-
-Chain single(const Element& element, const Input& input) {
-  Chain chain{.mass_kg = {1}, .links = {{Link::kGround, 0, element}}};
-  if (!input.empty()) chain.inputs = {input};
-  return chain;
-}
+using sim::reference::single;
 
 struct LinearCoulomb {
   double ratio, slope_npm;

@@ -6,20 +6,12 @@
 namespace dampline::app {
 namespace {
 
-using sim::reference::Chain;
-using sim::reference::Element;
 using sim::reference::Input;
-using sim::reference::Link;
 using sim::reference::Real;
+using sim::reference::single;
 using sim::reference::Start;
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
-
-Chain single(const Element& element, const Input& input) {
-  Chain chain{.mass_kg = {1}, .links = {{Link::kGround, 0, element}}};
-  if (!input.empty()) chain.inputs = {input};
-  return chain;
-}
 
 /// From 0.5 to 1.5 rad/s within so many periods of 2 pi s.
 Input sweep(Real amplitude_n, int periods) {

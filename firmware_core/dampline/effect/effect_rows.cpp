@@ -78,13 +78,7 @@ Row EffectRows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) co
 }
 
 double EffectRows::still_share(std::size_t scale, std::int64_t tick) const noexcept {
-  std::size_t at = index(tick - bank_.half(scale));
-  double sum = 0.0;
-  for (const double psi : bank_.psi(scale)) {
-    sum += std::abs(psi) * static_cast<double>(still_[at]);
-    if (++at == kRing) at = 0;
-  }
-  return sum / bank_.mass(scale);
+  return bank_.marked_share(scale, still_, index(tick - bank_.half(scale)));
 }
 
 }  // namespace dampline::effect

@@ -31,13 +31,7 @@ GalerkinRow RowBuilder::row(std::size_t scale, std::int64_t n) const noexcept {
 }
 
 double RowBuilder::still_share(std::size_t scale, std::int64_t n) const noexcept {
-  std::size_t at = law(n - bank_.half(scale));
-  double sum = 0.0;
-  for (const double psi : bank_.psi(scale)) {
-    sum += std::abs(psi) * static_cast<double>(still_[at]);
-    if (++at == kLawRing) at = 0;
-  }
-  return sum / bank_.mass(scale);
+  return bank_.marked_share(scale, still_, law(n - bank_.half(scale)));
 }
 
 }  // namespace dampline

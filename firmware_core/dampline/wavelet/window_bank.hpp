@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -43,6 +44,19 @@ class WindowBank {
   }
   /// Sum of |psi|.
   [[nodiscard]] double mass(std::size_t scale) const noexcept { return windows_[scale].mass; }
+
+  /// Share of the window's mass on marked samples. `marks` is a ring, 1 where a sample is marked
+  /// and 0 elsewhere; `first` is the place of the window's first sample in it.
+  template <std::size_t Ring>
+  [[nodiscard]] double marked_share(std::size_t scale, const std::array<float, Ring>& marks,
+                                    std::size_t first) const noexcept {
+    double sum = 0.0;
+    for (const double psi : this->psi(scale)) {
+      sum += std::abs(psi) * static_cast<double>(marks[first]);
+      if (++first == Ring) first = 0;
+    }
+    return sum / mass(scale);
+  }
 
   /// The lumped tables at -half-1...half+1.
   [[nodiscard]] std::span<const double> lumped_psi(std::size_t scale) const noexcept {
