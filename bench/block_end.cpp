@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// What the end of a block costs, which the sample path spreads over the samples that follow, and
+// what an answer costs that is asked for; see bench/README.md.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+#include "bench/chain.hpp"
+#include "bench/ride.hpp"
+#include "dampline/effect/explainer.hpp"
+
+namespace dampline::bench {
+namespace {
+
+/// One row of 21 columns into the information of its block.
+void absorb_row(benchmark::State& state) {
+  const auto store = std::make_unique<BlockStore>(BlockStore::Config{});
+  GalerkinRow row;
+  double x = 0.0;
+  while (state.KeepRunning()) {
+    for (int i = 0; i < kRowColumns; ++i) row[i] = std::sin(x += 1.7 + i);
+    store->absorb(0, 2, row);
+    benchmark::DoNotOptimize(*store);
+  }
+}
+
+/// All the work that a closed block leaves, at once. In the sample path it is kMergesPerStep rows a
+/// sample.
+void block_end(benchmark::State& state) {
+  const auto store = std::make_unique<BlockStore>(
+      BlockStore::Config{.memory = static_cast<Memory>(state.range(0)), .memory_blocks = 60.0});
+  std::int64_t block = 0;
+  const auto fill = [&] {
+    GalerkinRow row;
+    double x = 0.0;
+    for (std::size_t s = 0; s < kScales; ++s) {
+      for (int n = 0; n < 40; ++n) {
+        for (int i = 0; i < kRowColumns; ++i) row[i] = std::sin(x += 1.7 + i);
+        store->absorb(block, s, row);
+      }
+    }
+  };
+  for (; block < 70; ++block) {
+    fill();
+    store->close(block);
+    store->finish();
+  }
+  while (state.KeepRunning()) {
+    state.PauseTiming();
+    fill();
+    state.ResumeTiming();
+    store->close(block++);
+    store->finish();
+  }
+}
+
+template <class Answer>
+void after(benchmark::State& state, Answer answer) {
+  const auto chain = std::make_unique<Chain<Parts::kEstimate>>();
+  const auto methods = std::make_unique<Methods>(chain_config());
+  const auto phase = std::make_unique<PhaseView>(PhaseViewConfig{});
+  const auto diagnosis = std::make_unique<effect::Diagnosis>(chain_config());
+  SampleFeed feed;
+  for (std::int64_t i = 0; i < 300 * state.range(0); ++i) {
+    const Sample sample = feed.next();
+    const UpdateResult result = chain->identifier().update(sample);
+    methods->update(result);
+    if (result.has_motion) phase->update(result.motion);
+    diagnosis->update(sample, result);
+  }
+  answer(state, chain->identifier(), *methods, *phase, *diagnosis);
+}
+
+void snapshot(benchmark::State& state) {
+  after(state, [](auto& s, Identifier& identifier, auto&, auto&, auto&) {
+    while (s.KeepRunning()) benchmark::DoNotOptimize(identifier.snapshot());
+  });
+}
+
+void densities(benchmark::State& state) {
+  after(state, [](auto& s, auto&, const Methods& methods, auto&, auto&) {
+    while (s.KeepRunning())
+      benchmark::DoNotOptimize(methods.fokker_planck().estimates(37200.0, 5.26e6));
+  });
+}
+
+void phase_snapshot(benchmark::State& state) {
+  after(state, [](auto& s, auto&, auto&, const PhaseView& phase, auto&) {
+    const auto out = std::make_unique<PhaseSnapshot>();
+    while (s.KeepRunning()) {
+      phase.snapshot(*out);
+      benchmark::DoNotOptimize(*out);
+    }
+  });
+}
+
+void explanation(benchmark::State& state) {
+  after(state, [](auto& s, auto&, auto&, auto&, const effect::Diagnosis& diagnosis) {
+    const auto explainer = std::make_unique<effect::Explainer>();
+    while (s.KeepRunning()) benchmark::DoNotOptimize(explainer->explain(diagnosis, {}));
+  });
+}
+
+BENCHMARK(absorb_row)->Name("estimate/row");
+BENCHMARK(block_end)->Name("estimate/block end")->DenseRange(0, 2)->ArgName("memory");
+BENCHMARK(snapshot)->Name("answer/snapshot")->Arg(120)->ArgName("after_s");
+BENCHMARK(densities)->Name("answer/densities")->Arg(120)->ArgName("after_s");
+BENCHMARK(phase_snapshot)->Name("answer/phase")->Arg(120)->ArgName("after_s");
+BENCHMARK(explanation)->Name("answer/explanation")->Arg(120)->ArgName("after_s");
+
+}  // namespace
+}  // namespace dampline::bench
+
+BENCHMARK_MAIN();
