@@ -125,6 +125,20 @@ TEST(Information, NeverTakesNotANumberForASolution) {
   EXPECT_FALSE(factor_of(ab).solve(theta));
 }
 
+// What hours of forgetting at a standstill leave of a factor; it must not become 0 / 0.
+TEST(Information, StartsAnewFromWhatHasFadedBelowTheSmallestNumbers) {
+  const Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 15);
+  Factor factor = factor_of(ab.topRows(20));
+  for (int i = 0; i < 8'000; ++i) factor.scale(0.83);
+  const Eigen::MatrixXd later = ab.bottomRows(40);
+  for (int i = 0; i < later.rows(); ++i) factor.absorb(later.row(i).transpose());
+  Factor::Vector theta;
+  ASSERT_TRUE(factor.solve(theta));
+  Factor::Vector truth;
+  ASSERT_TRUE(factor_of(later).solve(truth));
+  EXPECT_LT((theta - truth).norm(), 1e-12 * truth.norm());
+}
+
 TEST(Information, MapsColumnsOntoOthers) {
   const Eigen::MatrixXd ab = random_matrix(40, kUnknowns + 1, 13);
   Eigen::Matrix<double, kUnknowns + 1, 3> map = random_matrix(kUnknowns + 1, 3, 14);

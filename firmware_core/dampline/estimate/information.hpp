@@ -29,9 +29,10 @@ class Information {
   void absorb(Row row, int first = 0) noexcept {
     for (int i = first; i < Columns; ++i) {
       const Scalar x = row[i];
-      if (x == Scalar(0)) continue;
+      const Scalar square = x * x;
+      if (square == Scalar(0)) continue;  // also what underflows: no angle can be formed from it
       Scalar* r = factor_.data() + offset(i);
-      const Scalar norm = std::sqrt(r[0] * r[0] + x * x);
+      const Scalar norm = std::sqrt(r[0] * r[0] + square);
       const Scalar c = r[0] / norm;
       const Scalar s = x / norm;
       r[0] = norm;
