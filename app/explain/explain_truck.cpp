@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
-#include <string>
 
 #include "app/error.hpp"
 #include "app/explain/fault_veto.hpp"
-#include "app/identify/identify_source.hpp"
-#include "app/identify/source_kind.hpp"
-#include "app/identify/truck_run.hpp"
+#include "app/explain/second_look.hpp"
+#include "app/explain/truck_pass.hpp"
+#include "app/explain/truck_points.hpp"
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::app {
@@ -33,56 +33,35 @@ effect::ExplainerConfig explainer_config(const Config& config) {
   return out;
 }
 
-SourceKind truck_source(const Config& config, const SourceOptions& source) {
-  const SourceKind kind = detect_source(config, source);
-  if (kind == SourceKind::kInterface)
-    throw UsageError{fmt::format(
-        "{}: is an interface, expected a record: record it with identify first", source.path)};
-  if (kind == SourceKind::kRigCsv)
-    throw UsageError{fmt::format(
-        "{}: has the columns of a rig, expected a truck's accelerations: explain cannot read rigs "
-        "yet",
-        source.path)};
-  return kind;
-}
-
-/// One record through the estimate and the diagnosis beside it.
-struct Pass {
-  std::unique_ptr<SampleFeed> feed;
-  std::unique_ptr<TruckRun> run;
-  std::unique_ptr<effect::Diagnosis> diagnosis;
-};
-
-Pass pass_of(const Config& config, const SourceOptions& source, double scale_m,
-             bool show_progress) {
-  Pass pass;
-  IdentifierConfig core = identifier_config(config);
-  pass.feed = open_feed(config, source, truck_source(config, source));
-  core.screen = pass.feed->screen();
-  pass.run = std::make_unique<TruckRun>(config, core.screen);
-  pass.diagnosis = std::make_unique<effect::Diagnosis>(core, scale_m);
-  pass.run->watch([&diagnosis = *pass.diagnosis](const Sample& sample, const UpdateResult& result) {
-    diagnosis.update(sample, result);
-  });
-  const auto no_state = [](const TruckRun&) { return std::string{}; };
-  pump(*pass.feed, source, show_progress, no_state, *pass.run);
-  pass.diagnosis->finish();
-  return pass;
-}
-
-Validated validate(const Config& config, const std::string& path, bool skip_bad_lines,
-                   double scale_m, const effect::Explanation& explanation,
-                   effect::Explainer& explainer) {
-  const Pass pass = pass_of(config, {path, skip_bad_lines}, scale_m, false);
-  const auto found = explainer.predict(*pass.diagnosis, explanation);
-  if (!(found.base_nmse > 0.0)) throw RunError{fmt::format("{}: too short to validate on", path)};
-  return {path, found.base_nmse, found.final_nmse};
+/// Predicts a record that took no part, and appends it to prediction.csv as the `number`-th.
+Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
+                   double scale_m, Explained& out, effect::Explainer& explainer) {
+  std::vector<PredictedRow>& rows = out.identified.evidence.prediction;
+  const IdentifierConfig core = identifier_config(config);
+  const auto keep = [&](const EvidencePoint& p) {
+    rows.push_back({number, p.time_s, p.measured_n, p.final_n, p.base_n,
+                    std::numeric_limits<double>::quiet_NaN()});
+  };
+  TruckPoints points{core.sample_rate_hz, core.moving_mass_kg, out.explanation, {keep, {}}};
+  bool started = false;
+  TruckPassOptions options{scale_m, false, {}};
+  options.watch = [&](const Sample& sample, const UpdateResult& result,
+                      const effect::Diagnosis& diagnosis) {
+    if (!started) points.set_first_tick(sample.tick);
+    started = true;
+    points.take(result, diagnosis);
+  };
+  const TruckPass pass = pass_of(config, source, options);
+  const auto found = explainer.predict(*pass.diagnosis, out.explanation);
+  if (!(found.base_nmse > 0.0))
+    throw RunError{fmt::format("{}: too short to validate on", source.path)};
+  return {source.path, found.base_nmse, found.final_nmse};
 }
 
 }  // namespace
 
 Explained explain_truck(const Config& config, const ExplainOptions& options) {
-  const Pass pass = pass_of(config, options.source, 0.0, options.show_progress);
+  const TruckPass pass = pass_of(config, options.source, {0.0, options.show_progress, {}});
   Explained out;
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
@@ -94,9 +73,11 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.withheld = forbids_naming(out.identified.faults);
   out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);
   if (out.withheld || out.drifts) withhold_effects(out.explanation);
+  look_again(config, options, pass, *explainer, out);
+  std::uint32_t number = 0;
   for (const std::string& path : options.validation)
-    out.validation.push_back(validate(config, path, options.source.skip_bad_lines,
-                                      pass.diagnosis->scale_m(), out.explanation, *explainer));
+    out.validation.push_back(validate(config, {path, options.source.skip_bad_lines}, ++number,
+                                      pass.diagnosis->scale_m(), out, *explainer));
   out.inputs = pass.feed->extra_inputs();
   out.inputs.insert(out.inputs.begin(), describe_input(options.source.path, "record"));
   for (const std::string& path : options.validation)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "app/explain/signature.hpp"
 #include "app/identify/sample_feed.hpp"
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
@@ -24,6 +25,7 @@ struct Explained {
   bool withheld{false};  ///< faults of the data forbid to name an effect
   bool drifts{false};    ///< a parameter that changed explains more than any effect
   std::vector<Validated> validation;
+  Signature signature;   ///< of what the final model leaves; rms 0: the record was read only once
   RunResult identified;  ///< what identify says of the same record
   std::string state;     ///< for state.dls
   std::vector<InputFile> inputs;

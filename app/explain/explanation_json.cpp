@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "app/explain/explanation_json.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "app/explain/signature_json.hpp"
 
 namespace dampline::app {
 namespace {
@@ -40,19 +44,45 @@ Json model(const Explanation& e, bool final) {
           {"parameters", list}};
 }
 
+std::vector<JudgedCandidate> runners_up_of(const Step& step) {
+  std::vector<JudgedCandidate> out;
+  for (std::size_t r = 0; r < step.runner_up_count; ++r) {
+    const effect::RunnerUp& u = step.runner_up[r];
+    out.push_back({effect::name_of(u.effect), u.held_out_nmse, u.gain, u.block_t});
+  }
+  return out;
+}
+
+/// The best of the round that added nothing.
+std::vector<JudgedCandidate> rejected_of(const Explanation& e) {
+  const Step& best = e.rejected;
+  if (best.chosen.count == 0) return {};
+  std::vector<JudgedCandidate> out{
+      {effect::name_of(best.chosen.effect), best.held_out_nmse_after, best.gain, best.block_t}};
+  for (const JudgedCandidate& c : runners_up_of(best)) out.push_back(c);
+  return out;
+}
+
+/// "like X, law incomplete", where more is left than a complete law would leave.
+Json note_of(const Explanation& e, const Step& step) {
+  if (floor_ratio(e) <= effect::kIncompleteAbove) return nullptr;
+  return fmt::format("like {}, law incomplete", effect::name_of(step.chosen.effect));
+}
+
 Json step_json(const Explanation& e, std::size_t i) {
   const Step& step = e.step[i];
-  Json runners_up = Json::array();
-  for (std::size_t r = 0; r < step.runner_up_count; ++r)
-    runners_up.push_back({{"effect", effect::name_of(step.runner_up[r].effect)},
-                          {"held_out_nmse", step.runner_up[r].held_out_nmse}});
+  const double ratio = floor_ratio(e);
   return {{"effect", effect::name_of(step.chosen.effect)},
           {"terms", terms_of(e, i + 1)},
           {"held_out_nmse_before", step.held_out_nmse_before},
           {"held_out_nmse_after", step.held_out_nmse_after},
           {"parameters", parameters_of(step)},
-          {"evidence", {{"gain", step.gain}, {"block_t", step.block_t}}},
-          {"runners_up", runners_up}};
+          {"evidence",
+           {{"gain", step.gain},
+            {"block_t", step.block_t},
+            {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
+          {"note", note_of(e, step)},
+          {"runners_up", judged_json(runners_up_of(step))}};
 }
 
 Json faults_of(const DataFaults& faults) {
@@ -64,6 +94,12 @@ Json faults_of(const DataFaults& faults) {
                     {"size", f.size},
                     {"unit", f.unit}});
   return list;
+}
+
+/// Something real is left that has no name.
+bool is_unknown(const Explanation& e) {
+  return e.conclusion == effect::Conclusion::kUnexplained ||
+         e.conclusion == effect::Conclusion::kPartlyExplained;
 }
 
 /// A parameter that changed, as the one step; its errors are those of the base, less its gain.
@@ -107,15 +143,24 @@ std::string to_json(const Explained& explained) {
                           {"nmse_after", v.nmse_after}});
   const bool drifts = explained.drifts;
   if (drifts) steps.push_back(drift_step(e, *explained.identified.faults.drift));
+  const bool unknown = !explained.withheld && !drifts && is_unknown(e);
+  if (unknown && e.step_count == 0)
+    steps.push_back(unknown_step(terms_of(e, 0), e.base.held_out_nmse, explained.signature));
   const auto verdict = drifts ? effect::Conclusion::kPartlyExplained : e.conclusion;
   const Json json{{"verdict", effect::name_of(verdict)},
                   {"base", model(e, false)},
                   {"steps", steps},
                   {"final", model(e, true)},
+                  {"rejected", judged_json(rejected_of(e))},
                   {"floor_nmse", e.floor_nmse > 0.0 ? Json(e.floor_nmse) : Json(nullptr)},
+                  {"left_over_floor", e.floor_nmse > 0.0 ? Json(floor_ratio(e)) : Json(nullptr)},
                   {"validation", validation},
                   {"faults", faults_of(explained.identified.faults)},
-                  {"signature", Json::object()}};
+                  {"force", "moving mass times the frame's deceleration, over 1 Hz"},
+                  {"signature", explained.signature.rms_n > 0.0
+                                    ? signature_json(explained.signature,
+                                                     {"frame", "wheelset1", "wheelset2"}, unknown)
+                                    : Json::object()}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -71,6 +71,15 @@ std::string summarize(const Explained& explained) {
     text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n",
                         "final", e.final.held_out_nmse, quantity(e.final_coulomb_n, "N"),
                         quantity(e.final_stiffness_npm, "N/m"));
+  if (e.floor_nmse > 0.0)
+    text += fmt::format(
+        "  {:<18} {:.4g} (nmse) by sensors and rounding alone; left: {:.2f} times that\n", "floor",
+        e.floor_nmse, floor_ratio(e));
+  if (e.step_count > 0 && floor_ratio(e) > effect::kIncompleteAbove)
+    text += fmt::format("  {:<18} like {}, law incomplete\n", "",
+                        effect::name_of(e.step[0].chosen.effect));
+  if (explained.signature.rms_n > 0.0)
+    text += fmt::format("  {:<18} {}\n", "what is left", describe(explained.signature));
   if (!(e.floor_nmse > 0.0))
     text +=
         "  what the sensors alone would leave is not known: whether more is left is not judged\n";

@@ -28,12 +28,8 @@ bool drift_explains_more(const DataFaults& faults,
 
 void withhold_effects(effect::Explanation& explanation) noexcept {
   if (explanation.step_count == 0) return;
-  explanation.step_count = 0;
+  drop_steps(explanation);
   explanation.conclusion = effect::Conclusion::kUnexplained;
-  explanation.model = explanation.base_model;
-  explanation.final = explanation.base;
-  explanation.final_coulomb_n = explanation.base_coulomb_n;
-  explanation.final_stiffness_npm = explanation.base_stiffness_npm;
 }
 
 }  // namespace dampline::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <memory>
 
 #include "app/identify/truck_result.hpp"
@@ -15,6 +16,12 @@ class FaultWatch {
   /// Precondition: Identifier::check(config).ok().
   explicit FaultWatch(const IdentifierConfig& config);
   void take(const Sample& sample) noexcept { guard_->update(sample); }
+  /// White noise of each channel, rms; 0: not known yet.
+  [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
+    std::array<double, kChannels> out{};
+    for (std::size_t c = 0; c < kChannels; ++c) out[c] = guard_->noise_mps2(c);
+    return out;
+  }
   /// End of the record: faults, inputs, and, from the statistics, a parameter that changed; to the
   /// result, with a warning for the reader where there is any of them.
   void finish(const TruckRecord& record, const Statistics& statistics, RunResult& result);

@@ -54,6 +54,10 @@ class TruckRun {
   [[nodiscard]] TruckView view() noexcept;
   /// When the first sample was taken, by its own time. Precondition: not empty().
   [[nodiscard]] std::int64_t first_time_ns() const noexcept { return first_time_ns_; }
+  /// White noise of each channel, rms, what its resolution makes included; 0: not known yet.
+  [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
+    return faults_.noise_mps2();
+  }
   /// No more samples. Precondition: not empty(). Throws RunError naming `source` when nothing could
   /// be identified, with the reasons, or when the measured rate is not the nominal one.
   [[nodiscard]] RunResult finish(const MeasuredRate& rate, const std::string& source);

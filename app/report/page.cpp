@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
+#include "app/report/evidence.hpp"
 #include "app/report/faults.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
@@ -50,6 +52,20 @@ constexpr std::string_view kForceText =
     "An excerpt of the measured force beside the force of the fitted model, over time and over "
     "velocity. Where the two clouds part, the model lacks something.";
 
+constexpr std::string_view kResidualText =
+    "What the model leaves of the force, before and after the effects were added. A mean that is "
+    "not zero over deflection or velocity is a law that is missing; what has no place there but a "
+    "frequency is a motion or a sensor.";
+constexpr std::string_view kLoopText =
+    "An excerpt: the force over velocity and over deflection, measured, and by the model before "
+    "and after.";
+constexpr std::string_view kLawText =
+    "The part of the force that resists motion, in steady sliding and undeflected, by the model "
+    "before and after.";
+constexpr std::string_view kPredictionText =
+    "A record that was never fitted: measured, and predicted from its motion alone. The stretch "
+    "of twenty seconds with the largest force.";
+
 /// Draws, and remembers the first reason why something could not be drawn.
 class Artist {
  public:
@@ -72,13 +88,44 @@ std::string section(std::string_view title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", title, body);
 }
 
+constexpr std::uint32_t kDrawnRecords = 6;
+
+/// What an explanation shows.
+std::string evidence_sections(const Evidence& evidence, Artist& artist) {
+  if (evidence.explanation.empty()) return "";
+  std::string out = section("What the model lacked", verdict_section(evidence));
+  out += section("Left before and after",
+                 artist.figure(plot_residual(evidence), "residual", kResidualText));
+  out += section("Loops", artist.figure(plot_loops(evidence), "loops", kLoopText));
+  out += section("Curve before and after", artist.figure(plot_law(evidence), "law", kLawText));
+  out += section("Candidates", candidate_section(evidence));
+  std::string drawn = validation_section(evidence);
+  const std::uint32_t records = std::min(predicted_records(evidence), kDrawnRecords);
+  for (std::uint32_t r = 1; r <= records; ++r)
+    drawn += artist.figure(plot_prediction(evidence, r), fmt::format("prediction{}", r),
+                           kPredictionText);
+  return out + section("Records that were never fitted", drawn);
+}
+
+/// What stands above everything else. Of an explanation, what identify says comes after it.
+std::string opening(const RunResult& result, const std::string& name, Artist& artist) {
+  std::string own = fmt::format("<p class=\"lead\">{}</p>\n{}", escape_html(result.headline),
+                                warning_section(result));
+  if (result.evidence.explanation.empty()) return own;
+  return fmt::format("<p class=\"lead\">{}</p>\n{}<h2>The model before, in {}</h2>\n{}",
+                     escape_html(explanation_headline(result.evidence)),
+                     evidence_sections(result.evidence, artist), escape_html(name), own);
+}
+
 }  // namespace
 
 Page make_page(const RunResult& result, const Provenance& provenance, const std::string& run_toml) {
   Artist artist;
   const bool truck = result.kind == "truck";
-  std::string body = section("Damping curve", artist.figure(plot_curve(result), "curve",
-                                                            truck ? kCurveText : kRigCurveText));
+  const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
+  std::string body = opening(result, name, artist);
+  body += section("Damping curve",
+                  artist.figure(plot_curve(result), "curve", truck ? kCurveText : kRigCurveText));
   body += section("Parameters", parameter_section(result));
   body += section("Quality", quality_section(result));
   body += section("Data quality",
@@ -98,13 +145,11 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
   body += section("What was left out, and why",
                   artist.figure(plot_excluded(result), "excluded", "") + excluded_section(result));
   body += section("Where this comes from", provenance_section(provenance, run_toml));
-  const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
   return {fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
                       "<title>dampline: {0}</title>\n<style>{1}</style></head><body>\n"
-                      "<h1>dampline: {0}</h1>\n<p class=\"lead\">{2}</p>\n{3}{4}</body></html>\n",
-                      escape_html(name), kPageStyle, escape_html(result.headline),
-                      warning_section(result), body),
+                      "<h1>dampline: {0}</h1>\n{2}</body></html>\n",
+                      escape_html(name), kPageStyle, body),
           artist.warning()};
 }
 

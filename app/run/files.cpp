@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "app/error.hpp"
+#include "app/run/evidence_tables.hpp"
 #include "app/run/parameters_json.hpp"
 #include "app/run/phase_json.hpp"
 #include "app/run/tables.hpp"
@@ -29,6 +30,26 @@ auto read_extra(const std::filesystem::path& file, Read read) {
   return std::filesystem::exists(file) ? read(read_text(file), file.string()) : Table{};
 }
 
+void stage_evidence(const Evidence& evidence, RunDirectory& directory) {
+  if (evidence.explanation.empty()) return;
+  directory.write("explanation.json", evidence.explanation);
+  if (!evidence.residual.empty()) directory.write("residual.csv", to_csv(evidence.residual));
+  if (!evidence.loops.empty()) directory.write("loops.csv", to_csv(evidence.loops));
+  if (!evidence.law.empty()) directory.write("law.csv", to_csv(evidence.law));
+  if (!evidence.prediction.empty()) directory.write("prediction.csv", to_csv(evidence.prediction));
+}
+
+Evidence read_evidence(const std::filesystem::path& run) {
+  Evidence out;
+  if (!std::filesystem::exists(run / "explanation.json")) return out;
+  out.explanation = read_text(run / "explanation.json");
+  out.residual = read_extra(run / "residual.csv", read_residual);
+  out.loops = read_extra(run / "loops.csv", read_loops);
+  out.law = read_extra(run / "law.csv", read_law);
+  out.prediction = read_extra(run / "prediction.csv", read_prediction);
+  return out;
+}
+
 }  // namespace
 
 void stage_files(const RunFiles& files, RunDirectory& directory) {
@@ -44,6 +65,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   if (!result.force.empty()) directory.write("force.csv", to_csv(result.force));
   directory.write("excluded.csv", to_csv(result.excluded));
   if (!result.events.empty()) directory.write("events.csv", to_csv(result.events));
+  stage_evidence(result.evidence, directory);
   directory.write("run.toml", files.run_toml);
 }
 
@@ -66,6 +88,7 @@ RunFiles read_files(const std::filesystem::path& run) {
   files.result.force = read_extra(run / "force.csv", read_force);
   files.result.excluded = read_extra(run / "excluded.csv", read_excluded);
   files.result.events = read_extra(run / "events.csv", read_events);
+  files.result.evidence = read_evidence(run);
   return files;
 }
 

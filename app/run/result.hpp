@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/run/evidence.hpp"
 #include "app/run/faults.hpp"
 #include "app/run/methods.hpp"
 #include "dampline/phase/phase_view.hpp"
@@ -126,6 +127,7 @@ struct RunResult {
   std::uint64_t events_more{0};    ///< events beyond the cap
   DataFaults faults;               ///< of a truck record
   std::optional<LiveFigures> live;
+  Evidence evidence;  ///< of an explanation
 };
 
 }  // namespace dampline::app

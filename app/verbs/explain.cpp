@@ -16,6 +16,7 @@
 #include "app/explain/explanation_json.hpp"
 #include "app/explain/rig/explain_rig.hpp"
 #include "app/identify/source_kind.hpp"
+#include "app/report/stage_report.hpp"
 #include "app/rig/csv_rig_source.hpp"
 #include "app/rig/identify_rig.hpp"
 #include "app/run/directory.hpp"
@@ -35,6 +36,7 @@ struct Options {
   bool json{false};
   bool quiet{false};
   bool force{false};
+  bool no_report{false};
 };
 
 std::filesystem::path place_of(const Options& options) {
@@ -48,7 +50,6 @@ std::filesystem::path place_of(const Options& options) {
 struct Findings {
   std::string json;
   std::string summary;
-  std::string prediction;
   RunFiles files;
 };
 
@@ -62,7 +63,6 @@ Findings explain_truck_record(const Config& config, const Options& options, bool
       {{options.records.front(), options.skip_bad_lines}, options.validation, show_progress});
   return {to_json(found),
           summarize(found),
-          "",
           {found.identified, write_run_toml(config, found.inputs), found.state}};
 }
 
@@ -73,12 +73,10 @@ Findings explain_rig_records(const Config& config, const Options& options) {
   for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
   for (const std::string& path : options.validation)
     inputs.push_back(describe_input(path, "validation"));
-  const RunResult first = identify_rig(
+  RunResult first = identify_rig(
       csv_rig_record(options.records.front(), config.input, options.skip_bad_lines), config);
-  return {to_json(found),
-          summarize(found),
-          prediction_csv(found),
-          {first, write_run_toml(config, inputs), ""}};
+  first.evidence = found.evidence;
+  return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};
 }
 
 int explain(const Options& options) {
@@ -88,16 +86,17 @@ int explain(const Options& options) {
   const bool rig = detect_source(config, {options.records.front(), options.skip_bad_lines}) ==
                    SourceKind::kRigCsv;
   const bool show_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  const Findings found = rig ? explain_rig_records(config, options)
-                             : explain_truck_record(config, options, show_progress);
-  directory.write("explanation.json", found.json);
-  if (!found.prediction.empty()) directory.write("prediction.csv", found.prediction);
+  Findings found = rig ? explain_rig_records(config, options)
+                       : explain_truck_record(config, options, show_progress);
+  found.files.result.evidence.explanation = found.json;
   stage_files(found.files, directory);
+  if (!options.no_report) stage_report(found.files, directory);
   directory.commit();
   if (options.json) {
     fmt::print("{}", found.json);
   } else if (!options.quiet) {
-    fmt::print("{}results: {}\n", found.summary, place.string());
+    fmt::print("{}{}: {}\n", found.summary, options.no_report ? "results" : "report",
+               (options.no_report ? place : place / "report.html").string());
   }
   return 0;
 }
@@ -123,6 +122,7 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--out", options->out,
                    "run directory; default: a new one named after the record");
   verb->add_flag("--force", options->force, "replace an earlier run in --out");
+  verb->add_flag("--no-report", options->no_report, "do not draw report.html");
   verb->add_flag("--json", options->json, "print explanation.json instead of a table");
   verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
   verb->add_flag("--skip-bad-lines", options->skip_bad_lines,

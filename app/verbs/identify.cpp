@@ -14,13 +14,12 @@
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/identify_live.hpp"
-#include "app/report/page.hpp"
+#include "app/report/stage_report.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
 #include "app/run/parameters_json.hpp"
 #include "app/run/run_toml.hpp"
 #include "app/text/summary.hpp"
-#include "app/text/warn.hpp"
 
 namespace dampline::app {
 namespace {
@@ -46,13 +45,6 @@ std::filesystem::path place_of(const Options& options) {
                                ? "stdin"
                                : std::filesystem::path{options.source.path}.stem().string();
   return free_run_name(std::filesystem::current_path(), stem);
-}
-
-void stage_report(const RunFiles& files, RunDirectory& directory) {
-  const Page page =
-      make_page(files.result, read_provenance(files.run_toml, "run.toml"), files.run_toml);
-  if (!page.warning.empty()) warn(page.warning);
-  directory.write("report.html", page.html);
 }
 
 void print_result(const Options& options, const RunResult& result,

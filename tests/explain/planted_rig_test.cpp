@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/explain/rig/explain_rig.hpp"
+#include "app/run/evidence_tables.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::app {
@@ -195,8 +196,9 @@ TEST(ARig, IsPredictedFromItsMotionAlone) {
   ASSERT_EQ(found.validation.size(), 2U);
   EXPECT_LT(found.validation[0].rrse_after, 0.5 * found.validation[0].rrse_before);
   EXPECT_EQ(found.validation[0].predicted_n, found.validation[1].predicted_n);
-  EXPECT_NE(prediction_csv(found).find("record,time_s,measured_n,predicted_n,residual_n\n1,"),
-            std::string::npos);
+  EXPECT_NE(
+      to_csv(found.evidence.prediction).find("record,time_s,measured_n,predicted_n,residual_n,"),
+      std::string::npos);
 }
 
 }  // namespace

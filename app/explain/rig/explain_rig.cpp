@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/error.hpp"
+#include "app/explain/rig/rig_evidence_points.hpp"
 #include "app/explain/rig/rig_search.hpp"
 
 namespace dampline::app {
@@ -14,10 +16,6 @@ namespace {
 
 constexpr double kStartS = 1.0;  // of measured force that may set the slip at the start
 constexpr int kStarts = 40;
-
-Eigen::VectorXd prediction(const RigModel& model, const RigRows& rows) {
-  return rows.values.leftCols(model.fit.theta.size()) * model.fit.theta;
-}
 
 /// Longest travel of a model's friction elements.
 double longest_travel_m(const RigModel& model) {
@@ -42,7 +40,7 @@ double start_of(const RigModel& model, const RigSeries& series) {
     first.start_m = longest_m * i / kStarts;
     const RigRows rows = rows_of(model.columns, first, 1);
     if (rows.values.rows() == 0) return 0.0;
-    const double error = (rows.values.rightCols<1>() - prediction(model, rows)).squaredNorm();
+    const double error = (rows.values.rightCols<1>() - model_force(model, rows)).squaredNorm();
     if (i > -kStarts && error >= best) continue;
     best = error;
     best_m = first.start_m;
@@ -89,14 +87,19 @@ RigValidated validate(const RigExplanation& explanation, RigSeries series) {
   if (final.values.rows() < 2)
     throw RunError{fmt::format("{}: too short to validate on", out.record)};
   const Eigen::VectorXd measured = final.values.rightCols<1>();
-  const Eigen::VectorXd predicted = prediction(explanation.final, final);
-  out.rrse_before = rrse(measured, prediction(explanation.base, base));
+  const Eigen::VectorXd predicted = model_force(explanation.final, final);
+  const Eigen::VectorXd before = model_force(explanation.base, base);
+  out.rrse_before = rrse(measured, before);
   out.rrse_after = rrse(measured, predicted);
   compare_reference(series, final, predicted, out);
   for (std::size_t r = 0; r < final.sample.size(); ++r) {
     out.time_s.push_back(series.time_s[final.sample[r]]);
     out.measured_n.push_back(measured[static_cast<Eigen::Index>(r)]);
     out.predicted_n.push_back(predicted[static_cast<Eigen::Index>(r)]);
+    out.base_n.push_back(before[static_cast<Eigen::Index>(r)]);
+    out.reference_n.push_back(series.reference_n.size() == series.size()
+                                  ? series.reference_n[final.sample[r]]
+                                  : std::numeric_limits<double>::quiet_NaN());
   }
   return out;
 }
@@ -122,6 +125,7 @@ RigExplanation explain_rig(const Config& config, const RigExplainOptions& option
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(
         out, read_rig_series(path, config, options.skip_bad_lines, options.reference_column)));
+  gather_evidence(records, out);
   return out;
 }
 

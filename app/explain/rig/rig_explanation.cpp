@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/explain/signature_json.hpp"
 #include "app/text/quantity.hpp"
 
 namespace dampline::app {
@@ -41,16 +42,13 @@ Json model_json(const RigModel& model, const std::vector<std::string>& records) 
 }
 
 Json step_json(const RigStep& step) {
-  Json runners_up = Json::array();
-  for (const auto& [effect, nmse] : step.runners_up)
-    runners_up.push_back({{"effect", effect}, {"held_out_nmse", nmse}});
   return {{"effect", step.effect},
           {"terms", step.terms},
           {"held_out_nmse_before", step.held_out_before},
           {"held_out_nmse_after", step.held_out_after},
           {"parameters", parameters_json(step.parameters)},
           {"evidence", {{"gain", step.gain}, {"block_t", step.block_t}}},
-          {"runners_up", runners_up}};
+          {"runners_up", judged_json(step.runners_up)}};
 }
 
 Json validated_json(const RigValidated& v) {
@@ -94,18 +92,24 @@ const char* RigExplanation::verdict() const {
 std::string to_json(const RigExplanation& e) {
   Json steps = Json::array();
   for (const RigStep& step : e.steps) steps.push_back(step_json(step));
+  const bool unknown = e.final.fit.held_out_nmse >= RigExplanation::kLittle;
+  if (unknown && e.steps.empty())
+    steps.push_back(unknown_step(e.base.terms, e.base.fit.held_out_nmse, e.signature));
   Json validation = Json::array();
   for (const RigValidated& v : e.validation) validation.push_back(validated_json(v));
-  const Json json{{"verdict", e.verdict()},
-                  {"base", model_json(e.base, e.records)},
-                  {"steps", steps},
-                  {"final", model_json(e.final, e.records)},
-                  {"floor_nmse", nullptr},
-                  {"held_out", e.whole_records ? "records" : "blocks"},
-                  {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
-                  {"validation", validation},
-                  {"faults", Json::array()},
-                  {"signature", Json::object()}};
+  const Json json{
+      {"verdict", e.verdict()},
+      {"base", model_json(e.base, e.records)},
+      {"steps", steps},
+      {"final", model_json(e.final, e.records)},
+      {"rejected", judged_json(e.rejected)},
+      {"floor_nmse", nullptr},
+      {"held_out", e.whole_records ? "records" : "blocks"},
+      {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
+      {"validation", validation},
+      {"faults", Json::array()},
+      {"force", e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured"},
+      {"signature", signature_json(e.signature, {"deflection", "velocity", "speed"}, unknown)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -127,10 +131,12 @@ std::string summarize(const RigExplanation& e) {
         fmt::format("+ {}: held-out rrse {:.3f} -> {:.3f}, t {:.1f}\n", step.effect,
                     std::sqrt(step.held_out_before), std::sqrt(step.held_out_after), step.block_t);
     text += lines_of(step.parameters);
-    for (const auto& [effect, nmse] : step.runners_up)
-      text += fmt::format("    {:<36} {} {:.3f}\n", "runner-up", effect, std::sqrt(nmse));
+    for (const JudgedCandidate& c : step.runners_up)
+      text +=
+          fmt::format("    {:<36} {} {:.3f}\n", "runner-up", c.effect, std::sqrt(c.held_out_nmse));
   }
   text += model_text("final", e.final);
+  text += "what is left: " + describe(e.signature) + "\n";
   for (const RigValidated& v : e.validation) {
     text += fmt::format("never fitted: {}: rrse {:.3f} -> {:.3f}", v.record, v.rrse_before,
                         v.rrse_after);
@@ -139,18 +145,6 @@ std::string summarize(const RigExplanation& e) {
                           v.same_rows_rrse, v.reference_rrse);
     text += fmt::format(" (slip at the start {:.1f} mm, from the first second of force)\n",
                         1e3 * v.start_m);
-  }
-  return text;
-}
-
-std::string prediction_csv(const RigExplanation& e) {
-  if (e.validation.empty()) return "";
-  std::string text = "record,time_s,measured_n,predicted_n,residual_n\n";
-  for (std::size_t r = 0; r < e.validation.size(); ++r) {
-    const RigValidated& v = e.validation[r];
-    for (std::size_t i = 0; i < v.time_s.size(); ++i)
-      text += fmt::format("{},{:.6f},{:.6g},{:.6g},{:.6g}\n", r + 1, v.time_s[i], v.measured_n[i],
-                          v.predicted_n[i], v.measured_n[i] - v.predicted_n[i]);
   }
   return text;
 }

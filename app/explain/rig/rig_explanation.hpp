@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "app/explain/judged.hpp"
 #include "app/explain/rig/rig_evidence.hpp"
+#include "app/explain/signature.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {
@@ -18,7 +19,7 @@ struct RigStep {
   double gain{0.0};     ///< beside a constant and a spring, which every comparison carries
   double block_t{0.0};  ///< mean over deviation of the mean of the blocks' improvements
   std::vector<Parameter> parameters;
-  std::vector<std::pair<std::string, double>> runners_up;  ///< effect, held-out nmse
+  std::vector<JudgedCandidate> runners_up;
 };
 
 /// A model of the force: which columns, their coefficients.
@@ -39,7 +40,8 @@ struct RigValidated {
   bool has_reference{false};
   double reference_rrse{0.0};  ///< over the samples that the reference has
   double same_rows_rrse{0.0};  ///< of the final model over the same samples
-  std::vector<double> time_s, measured_n, predicted_n;
+  std::vector<double> time_s, measured_n, predicted_n, base_n;
+  std::vector<double> reference_n;  ///< NaN where there is none
 };
 
 struct RigExplanation {
@@ -47,9 +49,12 @@ struct RigExplanation {
   RigModel base;
   RigModel final;
   std::vector<RigStep> steps;
+  std::vector<JudgedCandidate> rejected;  ///< the best of the round that added nothing
   std::vector<RigValidated> validation;
   double filter_hz{0.0};  ///< corner of the test function; 0: none
   bool whole_records{false};
+  Evidence evidence;    ///< but for its JSON
+  Signature signature;  ///< of what the final model leaves
   /// What the sensors alone would leave is not known: kLittle decides.
   [[nodiscard]] const char* verdict() const;
   static constexpr double kLittle = 0.01;  ///< held-out nmse
@@ -59,7 +64,5 @@ struct RigExplanation {
 [[nodiscard]] std::string to_json(const RigExplanation& explanation);
 /// For a terminal.
 [[nodiscard]] std::string summarize(const RigExplanation& explanation);
-/// prediction.csv: record, time_s, measured, predicted, residual. Empty without validation.
-[[nodiscard]] std::string prediction_csv(const RigExplanation& explanation);
 
 }  // namespace dampline::app

@@ -147,14 +147,17 @@ bool RigSearch::forward() {
   const bool passes = chosen_.empty()
                           ? top.gain > kClearGain || (top.gain > kSmallGain && top.t > kSignificant)
                           : top.gain > kLaterGain && top.t > kLaterSignificant;
+  rejected_.clear();
+  for (std::size_t i = 0; i < order.size() && i <= kRunnersUp; ++i)
+    rejected_.push_back({order[i].candidate->effect, order[i].nmse, order[i].gain, order[i].t});
   if (!passes) return false;
   Chosen chosen{*top.candidate, {}, 0.0};
   chosen.step.effect = top.candidate->effect;
   chosen.step.held_out_before = before.fit.held_out_nmse;
   chosen.step.gain = top.gain;
   chosen.step.block_t = top.t;
-  for (std::size_t i = 1; i < order.size() && i <= kRunnersUp; ++i)
-    chosen.step.runners_up.emplace_back(order[i].candidate->effect, order[i].nmse);
+  chosen.step.runners_up.assign(rejected_.begin() + 1, rejected_.end());
+  rejected_.clear();
   chosen_.push_back(chosen);
   if (!filtered()) try_linear(mass_added_);
   if (has_memory(chosen.step.effect)) refine(chosen_.back());
@@ -234,6 +237,7 @@ RigExplanation RigSearch::run() {
   if (!library_.base_spring) try_linear(spring_added_);
   const Judged now = judge(chosen_columns());
   describe_steps(now);
+  out.rejected = rejected_;
   describe(out.final, now, chosen_columns());
   for (const Chosen& c : chosen_) {
     out.steps.push_back(c.step);

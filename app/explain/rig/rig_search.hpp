@@ -54,6 +54,7 @@ class RigSearch {
   bool base_friction_left_{true};  ///< the base's friction stays beside the bank
   bool spring_added_{false};
   bool mass_added_{false};
+  std::vector<JudgedCandidate> rejected_;  ///< of the newest round
 };
 
 }  // namespace dampline::app

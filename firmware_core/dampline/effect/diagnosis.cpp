@@ -37,6 +37,7 @@ Diagnosis::Diagnosis(const IdentifierConfig& config, double scale_m) noexcept
 void Diagnosis::update(const Sample& sample, const UpdateResult& result) noexcept {
   raw_.push(sample);
   store_.step();
+  column_tick_ = -1;
   if (result.has_motion) take(result.motion);
 }
 
@@ -111,6 +112,7 @@ void Diagnosis::take(const Motion& motion) noexcept {
   if (mean_.complete()) {
     if (first_row_tick_ < 0) first_row_tick_ = motion.tick - 1;
     rows_.set(motion.tick - 1, values, still_);
+    column_tick_ = motion.tick - 1;
     build_rows(motion.tick - 1);
   }
   still_ = motion.still;

@@ -32,6 +32,13 @@ class Diagnosis {
 
   [[nodiscard]] const ImpulseMeter& impulses() const noexcept { return impulses_; }
   [[nodiscard]] const GramStore& store() const noexcept { return store_; }
+  /// The tick whose sampled columns the newest update() made; negative: it made none.
+  [[nodiscard]] std::int64_t column_tick() const noexcept { return column_tick_; }
+  /// The sampled columns of a row at column_tick().
+  [[nodiscard]] const EffectRows::Sampled& columns() const noexcept {
+    return rows_.values(column_tick_);
+  }
+  [[nodiscard]] const RawRing& raw() const noexcept { return raw_; }
   /// The deflection's size: its rms over the learning time, rounded to a half power of two of a
   /// millimetre so that records share their grids. 0 until it is known.
   [[nodiscard]] double scale_m() const noexcept { return scale_known_ ? mean_.scale_m() : 0.0; }
@@ -64,6 +71,7 @@ class Diagnosis {
 
   std::int64_t learnt_{0};
   double learnt_squares_{0.0};
+  std::int64_t column_tick_{-1};
   std::int64_t last_tick_{0};
   std::int64_t first_row_tick_{0};  // first tick of the stretch with columns
   std::int64_t open_block_{0};

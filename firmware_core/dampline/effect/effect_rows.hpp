@@ -26,6 +26,10 @@ class EffectRows {
     still_[index(tick)] = still ? 1.0F : 0.0F;
   }
 
+  [[nodiscard]] const Sampled& values(std::int64_t tick) const noexcept {
+    return values_[index(tick)];
+  }
+
   /// The row of a scale centred on a tick. Needs the columns at tick - half...tick + half and the
   /// accelerations one further on each side.
   [[nodiscard]] Row row(std::size_t scale, std::int64_t tick, const RawRing& raw) const noexcept;

@@ -26,8 +26,6 @@ constexpr double kRowsPerFact = 4.0;    // windows overlap
 constexpr double kImpulseShare = 0.08;  // of the residual's energy in large values
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
-constexpr double kNearFloor = 1.5;
-constexpr double kUnexplainedAbove = 1.25;
 
 bool contains(const Model& model, Effect effect) noexcept {
   for (std::size_t i = 0; i < model.count; ++i) {
@@ -116,22 +114,6 @@ double handicap(const Candidate& candidate) noexcept {
 
 }  // namespace
 
-const char* name_of(Conclusion conclusion) noexcept {
-  switch (conclusion) {
-    case Conclusion::kNotReady:
-      return "not_ready";
-    case Conclusion::kComplete:
-      return "complete";
-    case Conclusion::kExplained:
-      return "explained";
-    case Conclusion::kPartlyExplained:
-      return "partly_explained";
-    case Conclusion::kUnexplained:
-      break;
-  }
-  return "unexplained";
-}
-
 void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept {
   best = {};
   list_candidates({now.theta[ModelFit::kCoulomb], now.theta[ModelFit::kStiffness]}, candidates_);
@@ -157,6 +139,14 @@ ModelFit Explainer::settle(const GramStore& store, const Model& model) noexcept 
     fit = fitter_.fit(model);
   }
   return fit;
+}
+
+void Explainer::add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
+                              Step& step) noexcept {
+  const ModelFit fit = fitter_.fit(model.with(candidate));
+  step.runner_up[step.runner_up_count++] = {candidate.effect, fit.held_out_nmse,
+                                            1.0 - fit.held_out_nmse / now.held_out_nmse,
+                                            block_t(now, fit, evidence_.count)};
 }
 
 bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
@@ -188,14 +178,14 @@ bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
   step.held_out_nmse_after = fit.held_out_nmse;
   step.gain = 1.0 - fit.held_out_nmse / now.held_out_nmse;
   step.block_t = block_t(now, fit, evidence_.count);
+  for (std::size_t i = 0; i < found && step.runner_up_count < Step::kMostRunnersUp; ++i) {
+    if (i != pick) add_runner_up(out.model, order[i]->candidate, now, step);
+  }
   out.rejected = step;
   if (!passes(step, out.step_count == 0, later_gain(out.model, step.chosen.effect))) return false;
-  for (std::size_t i = 0; i < found && step.runner_up_count < Step::kMostRunnersUp; ++i) {
-    if (i == pick) continue;
-    step.runner_up[step.runner_up_count++] = {order[i]->candidate.effect, order[i]->held_out_nmse};
-  }
   out.model = out.model.with(chosen.candidate);
   out.step[out.step_count++] = step;
+  out.rejected = {};
   now = fit;
   return true;
 }
@@ -264,33 +254,22 @@ Explanation Explainer::explain(const Diagnosis& diagnosis, const ExplainerConfig
   ModelFit now = settle(store, out.model);
   if (!now.ok) return out;
   out.base = now;
+  out.base_weight = evidence_.weight;
+  out.base_target = evidence_.total.at(kTarget, kTarget);
   while (forward(out, now)) now = settle(store, out.model);
   const bool impulses = allowed_[static_cast<std::size_t>(Effect::kImpulsiveInput)];
   if (out.step_count == 0 && impulses) add_impulses(diagnosis.impulses(), now, out);
   backward(out, now);
   out.final = settle(store, out.model);
   out.weight = evidence_.weight;
+  out.target = evidence_.total.at(kTarget, kTarget);
   for (std::size_t i = 0; i + out.base_count < out.model.count; ++i) {
     refine(out.model, out.base_count + i, out.final, out.step[i]);
   }
   out.floor_nmse = config.floor_nmse;
   describe(config.moving_mass_kg, diagnosis.scale_m(), out);
-  const bool near =
-      !(config.floor_nmse > 0.0) || out.final.held_out_nmse <= kNearFloor * config.floor_nmse;
-  const bool above =
-      config.floor_nmse > 0.0 && out.final.held_out_nmse > kUnexplainedAbove * config.floor_nmse;
-  if (out.step_count == 0) {
-    out.conclusion = above ? Conclusion::kUnexplained : Conclusion::kComplete;
-  } else {
-    out.conclusion = near ? Conclusion::kExplained : Conclusion::kPartlyExplained;
-  }
+  conclude(0, out);
   return out;
-}
-
-Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanation& by) noexcept {
-  if (other.store().count() == 0 || !evidence_.load(other.store())) return {};
-  evidence_.weigh(other.store(), by.weight);
-  return {fitter_.nmse_of(by.base_model, by.base), fitter_.nmse_of(by.model, by.final)};
 }
 
 }  // namespace dampline::effect

@@ -39,6 +39,13 @@ class Explainer {
   };
   [[nodiscard]] Prediction predict(const Diagnosis& other, const Explanation& by) noexcept;
 
+  /// What a complete model leaves, from the twin: a record of the base law simulated on the same
+  /// input, with the sensors' noise and resolution, through the same Identifier and a Diagnosis of
+  /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
+  /// on the twin, which has none, takes all effects back; concludes. False when the twin has too
+  /// few rows.
+  bool apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
+
  private:
   struct Best {
     bool ok{false};
@@ -52,6 +59,8 @@ class Explainer {
   /// Fits a model and weighs the scales by what it leaves.
   [[nodiscard]] ModelFit settle(const GramStore& store, const Model& model) noexcept;
   bool forward(Explanation& out, ModelFit& now) noexcept;
+  void add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
+                     Step& step) noexcept;
   void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;
   void backward(Explanation& out, ModelFit& now) noexcept;
 

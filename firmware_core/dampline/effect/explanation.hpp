@@ -27,6 +27,8 @@ struct EffectParameter {
 struct RunnerUp {
   Effect effect{Effect::kUnknown};
   double held_out_nmse{0.0};
+  double gain{0.0};
+  double block_t{0.0};
 };
 
 /// One effect that was added.
@@ -52,16 +54,34 @@ struct Explanation {
   ModelFit base;
   ModelFit final;
   Model base_model;
-  Model model;                ///< the final one: base, then steps
-  std::size_t base_count{0};  ///< effects of the base
-  ScaleWeights weight{};      ///< of the scales in final's errors
+  Model model;                 ///< the final one: base, then steps
+  std::size_t base_count{0};   ///< effects of the base
+  ScaleWeights base_weight{};  ///< of the scales in base's errors
+  ScaleWeights weight{};       ///< of the scales in final's errors
+  double base_target{0.0};     ///< sum of squares that base's errors are shares of
+  double target{0.0};          ///< the same of final's
   std::size_t step_count{0};
   std::array<Step, kMostSteps> step{};
-  Step rejected;  ///< the best candidate that did not pass, when there was one
-  double floor_nmse{
-      0.0};  ///< what the sensors and the law's width leave of a complete model; 0: unknown
+  Step rejected;                ///< the best candidate that did not pass, when there was one
+  double base_floor_nmse{0.0};  ///< the floor in base's weights; 0: unknown
+  /// What the sensors and the law's width leave of a complete model, to compare with
+  /// final.held_out_nmse; 0: unknown.
+  double floor_nmse{0.0};
   /// Coefficients in newtons: friction and spring of base and final model.
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
 };
+
+/// What is left over what a complete model leaves; 0 where that is unknown. What impacts leave that
+/// were named does not count.
+[[nodiscard]] double floor_ratio(const Explanation& explanation) noexcept;
+/// Above it, an effect is like what is missing, but its law is not complete.
+inline constexpr double kIncompleteAbove = 1.5;
+
+/// Decides the conclusion from the steps and the floor. `impacts`: blows in the input, which every
+/// model leaves a little of.
+void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
+
+/// Takes back all steps: what is left is the base's.
+void drop_steps(Explanation& explanation) noexcept;
 
 }  // namespace dampline::effect

@@ -142,6 +142,17 @@ double ModelFitter::nmse_of(const Model& model, const ModelFit& fit) const noexc
   return target > 0.0 ? error_of(normal, count, fit.theta) / target : 0.0;
 }
 
+double ModelFitter::force(const Model& model, const ModelFit& fit, const Row& row) noexcept {
+  Terms terms{};
+  const int count = columns(model, fit.width_index, terms);
+  double sum = 0.0;
+  for (int i = 0; i + 1 < count; ++i) {
+    const Regressor& r = terms[static_cast<std::size_t>(i)];
+    for (std::size_t p = 0; p < r.count; ++p) sum += fit.theta[i] * r.weight[p] * row[r.column[p]];
+  }
+  return sum;
+}
+
 ScaleWeights ModelFitter::weights_of(const Model& model, const ModelFit& fit) const noexcept {
   Terms terms{};
   const int count = columns(model, fit.width_index, terms);

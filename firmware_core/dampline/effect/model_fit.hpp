@@ -59,6 +59,9 @@ class ModelFitter {
   [[nodiscard]] ModelFit fit(const Model& model) noexcept;
   /// NMSE of a model with the coefficients of another record.
   [[nodiscard]] double nmse_of(const Model& model, const ModelFit& fit) const noexcept;
+  /// The force of a model in a row, per unit of moving mass.
+  [[nodiscard]] static double force(const Model& model, const ModelFit& fit,
+                                    const Row& row) noexcept;
   /// The inverse residual variance of a fit, scale by scale: the weights that belong to it.
   [[nodiscard]] ScaleWeights weights_of(const Model& model, const ModelFit& fit) const noexcept;
 

@@ -52,6 +52,10 @@ class Guard {
   [[nodiscard]] const GuardInputs& inputs() const noexcept { return inputs_; }
   /// Of the newest block of spectra that was judged.
   [[nodiscard]] const BlockFigures& block() const noexcept { return spectral_.figures(); }
+  /// White noise of a channel, rms, what its resolution makes included; 0: not known yet.
+  [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept {
+    return spectral_.noise_mps2(channel);
+  }
 
  private:
   static constexpr std::int64_t kBridged = 8;  // missing samples that a line is drawn across

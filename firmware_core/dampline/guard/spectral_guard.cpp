@@ -203,6 +203,14 @@ void SpectralGuard::judge_rate(FaultBook& book) noexcept {
               book.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
 }
 
+double SpectralGuard::noise_mps2(std::size_t channel) const noexcept {
+  const bool both = channel > 0 && noise_[1].size() > 0;
+  const BlockSeries& series = noise_[both ? 1 : 0];
+  if (series.size() == 0) return 0.0;
+  const double density = series.median() * (both ? 0.5 : 1.0);
+  return std::sqrt(0.5 * density * config_.sample_rate_hz);
+}
+
 double SpectralGuard::noise_limit(std::size_t channel) const noexcept {
   const double noise = config_.noise_mps2[channel];
   const double step = config_.step_mps2[channel];

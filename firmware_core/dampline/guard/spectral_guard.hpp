@@ -40,6 +40,9 @@ class SpectralGuard {
   [[nodiscard]] double delay_s() const noexcept { return delay_s_; }
   /// Of the newest block that was judged.
   [[nodiscard]] const BlockFigures& figures() const noexcept { return survey_.figures(); }
+  /// White noise of a channel, rms, what its resolution makes included: median over the newest
+  /// blocks. Of the wheelsets the mean of both, or the frame's where they are not side by side.
+  [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept;
 
  private:
   enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kRate, kNoise, kBurst };

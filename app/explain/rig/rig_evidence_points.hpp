@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <vector>
+
+#include "app/explain/rig/rig_explanation.hpp"
+
+namespace dampline::app {
+
+/// The force of a model at the rows that were made for it.
+[[nodiscard]] Eigen::VectorXd model_force(const RigModel& model, const RigRows& rows);
+
+/// What the report shows of an explanation, and what is left: fills `evidence` but for its JSON,
+/// and `signature`.
+void gather_evidence(const std::vector<RigSeries>& records, RigExplanation& explanation);
+
+}  // namespace dampline::app

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/second_look.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include "app/explain/evidence_meter.hpp"
+#include "app/explain/truck_points.hpp"
+#include "app/explain/twin.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kLeastTurn = 0.05;  // of the deflection's rms: smaller ones are noise
+constexpr double kLawReach = 2.5;    // of the velocity's rms
+
+/// The declared law beside the effects that were found, per unit of mass. With a mass on the frame
+/// every coefficient of the fit is of all mass, and friction and spring are of the frame's own.
+TwinConfig twin_config(const IdentifierConfig& core, const effect::Explanation& e,
+                       const std::array<double, kChannels>& noise_mps2) {
+  TwinConfig out;
+  out.sample_rate_hz = core.sample_rate_hz;
+  out.stiffness_per_s2 = e.final.theta[effect::ModelFit::kStiffness];
+  const double mass_kg = e.final_stiffness_npm.value / out.stiffness_per_s2;
+  out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
+  if (e.base_count > 0) out.viscous_per_s = e.final.theta[effect::ModelFit::kFirstEffect];
+  out.anti_alias_hz = core.anti_alias.corner_hz;
+  out.noise_mps2 = noise_mps2;
+  out.step_mps2 = core.screen.step_mps2;
+  return out;
+}
+
+bool is_physical(const TwinConfig& c) {
+  return c.stiffness_per_s2 > 0.0 && c.coulomb_mps2 > 0.0 && c.viscous_per_s >= 0.0;
+}
+
+/// The twin through the same estimator.
+class TwinPass {
+ public:
+  TwinPass(const IdentifierConfig& core, const TwinConfig& config, double scale_m)
+      : twin_{config},
+        identifier_{std::make_unique<Identifier>(core)},
+        diagnosis_{std::make_unique<effect::Diagnosis>(core, scale_m)} {}
+  void take(const Sample& sample) {
+    const auto twin = twin_.next(sample);
+    if (twin) diagnosis_->update(*twin, identifier_->update(*twin));
+  }
+  [[nodiscard]] const effect::Diagnosis& finish() {
+    diagnosis_->finish();
+    return *diagnosis_;
+  }
+
+ private:
+  Twin twin_;
+  std::unique_ptr<Identifier> identifier_;
+  std::unique_ptr<effect::Diagnosis> diagnosis_;
+};
+
+EvidenceScale scale_of(const IdentifierConfig& core, const TruckPass& first) {
+  const double deflection_m = first.diagnosis->deflection_rms_m();
+  return {deflection_m, first.diagnosis->velocity_rms_mps(), kLeastTurn * deflection_m,
+          core.sample_rate_hz, first.run->time_s()};
+}
+
+/// The record again; with a twin where there is one.
+void read_again(const Config& config, const ExplainOptions& options, const IdentifierConfig& core,
+                const TruckPass& first, TwinPass* twin, Explained& out) {
+  EvidenceMeter meter{scale_of(core, first)};
+  TruckPoints points{core.sample_rate_hz,
+                     core.moving_mass_kg,
+                     out.explanation,
+                     {[&](const EvidencePoint& p) { meter.add(p); }, [&] { meter.gap(); }}};
+  bool started = false;
+  TruckPassOptions again{first.diagnosis->scale_m(), options.show_progress, {}};
+  again.watch = [&](const Sample& sample, const UpdateResult& result,
+                    const effect::Diagnosis& diagnosis) {
+    if (!started) points.set_first_tick(sample.tick);
+    started = true;
+    points.take(result, diagnosis);
+    if (twin != nullptr) twin->take(sample);
+  };
+  static_cast<void>(pass_of(config, options.source, again));
+  Evidence& evidence = out.identified.evidence;
+  evidence = {};
+  meter.fill(evidence);
+  evidence.law = truck_law(out.explanation, core.moving_mass_kg,
+                           kLawReach * first.diagnosis->velocity_rms_mps());
+  out.signature = meter.signature();
+}
+
+}  // namespace
+
+bool can_read_again(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) ||
+         std::filesystem::is_directory(path, ignored);
+}
+
+void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
+                effect::Explainer& explainer, Explained& out) {
+  if (!can_read_again(options.source.path)) return;
+  IdentifierConfig core = identifier_config(config);
+  core.screen = first.feed->screen();
+  const TwinConfig settings = twin_config(core, out.explanation, first.run->noise_mps2());
+  const auto twin = is_physical(settings)
+                        ? std::make_unique<TwinPass>(core, settings, first.diagnosis->scale_m())
+                        : nullptr;
+  read_again(config, options, core, first, twin.get(), out);
+  if (!twin) return;
+  const std::size_t steps = out.explanation.step_count;
+  const auto conclusion = out.explanation.conclusion;
+  explainer.apply_floor(twin->finish(), out.identified.faults.impacts, out.explanation);
+  if (out.withheld || out.drifts) out.explanation.conclusion = conclusion;
+  // A twin that shows the same effect has taken it back: what is left is the base's.
+  if (out.explanation.step_count != steps) read_again(config, options, core, first, nullptr, out);
+}
+
+}  // namespace dampline::app

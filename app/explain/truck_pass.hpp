@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "app/config/config.hpp"
+#include "app/identify/sample_feed.hpp"
+#include "app/identify/truck_run.hpp"
+#include "dampline/effect/diagnosis.hpp"
+
+namespace dampline::app {
+
+/// One record through the estimate and the diagnosis beside it.
+struct TruckPass {
+  std::unique_ptr<SampleFeed> feed;
+  std::unique_ptr<TruckRun> run;
+  std::unique_ptr<effect::Diagnosis> diagnosis;
+};
+
+struct TruckPassOptions {
+  double scale_m{0.0};  ///< the deflection's size where it is fixed
+  bool show_progress{false};
+  /// Sees every sample after the diagnosis took it.
+  std::function<void(const Sample&, const UpdateResult&, const effect::Diagnosis&)> watch{};
+};
+
+/// Throws RunError when the record holds no sample, UsageError when it is no truck's.
+[[nodiscard]] TruckPass pass_of(const Config& config, const SourceOptions& source,
+                                const TruckPassOptions& options);
+
+}  // namespace dampline::app

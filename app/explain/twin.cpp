@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "app/explain/twin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline::app {
+namespace {
+
+constexpr int kFine = 8;               // steps a sample
+constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
+constexpr double kSteepest = 0.8;      // slope times step that Runge-Kutta is trusted with
+constexpr std::uint64_t kSeed = 1987;
+
+sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config) {
+  return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, kFine * config.sample_rate_hz};
+}
+
+bool is_number(const Sample& sample) {
+  return std::all_of(sample.accel_mps2.begin(), sample.accel_mps2.end(),
+                     [](double a) { return std::isfinite(a); });
+}
+
+}  // namespace
+
+Twin::Twin(const TwinConfig& config)
+    : config_{config}, filter_{filter_of(config)}, noise_{kSeed, sim::Stream::kSensors} {
+  const double slope = 2.0 * config.coulomb_mps2 / kLawWidthMps;
+  parts_ = 1 + static_cast<int>(slope / (kSteepest * kFine * config.sample_rate_hz));
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double rounding = config.step_mps2[c] * config.step_mps2[c] / 12.0;
+    white_mps2_[c] =
+        std::sqrt(std::max(config.noise_mps2[c] * config.noise_mps2[c] - rounding, 0.0));
+  }
+}
+
+double Twin::frame_mps2(const Motion& m) const noexcept {
+  return -config_.stiffness_per_s2 * m.deflection_m - config_.viscous_per_s * m.velocity_mps -
+         config_.coulomb_mps2 * std::tanh(m.velocity_mps / kLawWidthMps);
+}
+
+/// y'' = 2 z_b'' - (z_1'' + z_2'')
+Twin::Motion Twin::rate(const Motion& m, double input_mps2) const noexcept {
+  return {m.velocity_mps, 2.0 * frame_mps2(m) - input_mps2};
+}
+
+void Twin::step(double from_mps2, double to_mps2, double step_s) noexcept {
+  const auto moved = [this](const Motion& by, double s) {
+    return Motion{motion_.deflection_m + s * by.deflection_m,
+                  motion_.velocity_mps + s * by.velocity_mps};
+  };
+  const double middle_mps2 = 0.5 * (from_mps2 + to_mps2);
+  const Motion a = rate(motion_, from_mps2);
+  const Motion b = rate(moved(a, 0.5 * step_s), middle_mps2);
+  const Motion c = rate(moved(b, 0.5 * step_s), middle_mps2);
+  const Motion d = rate(moved(c, step_s), to_mps2);
+  const auto mean = [](double p, double q, double r, double s) {
+    return (p + 2.0 * q + 2.0 * r + s) / 6.0;
+  };
+  motion_ = moved({mean(a.deflection_m, b.deflection_m, c.deflection_m, d.deflection_m),
+                   mean(a.velocity_mps, b.velocity_mps, c.velocity_mps, d.velocity_mps)},
+                  step_s);
+}
+
+/// The wheelsets between the second and the third of four samples, by the cubic through them.
+std::array<double, 2> Twin::between(double u) const noexcept {
+  const double w0 = -u * (u - 1.0) * (u - 2.0) / 6.0;
+  const double w1 = (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0;
+  const double w2 = -(u + 1.0) * u * (u - 2.0) / 2.0;
+  const double w3 = (u + 1.0) * u * (u - 1.0) / 6.0;
+  std::array<double, 2> out{};
+  for (std::size_t w = 0; w < 2; ++w)
+    out[w] = w0 * held_[0].accel_mps2[1 + w] + w1 * held_[1].accel_mps2[1 + w] +
+             w2 * held_[2].accel_mps2[1 + w] + w3 * held_[3].accel_mps2[1 + w];
+  return out;
+}
+
+Sample Twin::seen(const std::array<double, kChannels>& accel_mps2) {
+  Sample out = held_[2];
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double noisy = accel_mps2[c] + white_mps2_[c] * noise_.normal();
+    const double step = config_.step_mps2[c];
+    out.accel_mps2[c] = step > 0.0 ? step * std::round(noisy / step) : noisy;
+  }
+  return out;
+}
+
+void Twin::restart() noexcept {
+  count_ = 0;
+  motion_ = {};
+  filter_ = filter_of(config_);
+}
+
+std::optional<Sample> Twin::next(const Sample& sample) {
+  if (!is_number(sample) || (count_ > 0 && sample.tick != held_[3].tick + 1)) restart();
+  if (!is_number(sample)) return sample;
+  std::rotate(held_.begin(), held_.begin() + 1, held_.end());
+  held_[3] = sample;
+  if (++count_ < 4) return std::nullopt;
+  const double fine_s = 1.0 / (kFine * config_.sample_rate_hz);
+  std::array<double, 2> last = between(0.0);
+  std::array<double, kChannels> filtered{};
+  for (int i = 1; i <= kFine; ++i) {
+    const std::array<double, 2> now = between(static_cast<double>(i) / kFine);
+    const double from = last[0] + last[1];
+    const double to = now[0] + now[1];
+    for (int p = 0; p < parts_; ++p)
+      step(from + (to - from) * p / parts_, from + (to - from) * (p + 1) / parts_, fine_s / parts_);
+    const std::array<double, kChannels> accel{frame_mps2(motion_), now[0], now[1]};
+    filtered = config_.anti_alias_hz > 0.0 ? filter_.update(accel) : accel;
+    last = now;
+  }
+  return seen(filtered);
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "dampline/sample/sample.hpp"
+#include "sim_hw/butterworth.hpp"
+#include "sim_hw/random.hpp"
+
+namespace dampline::app {
+
+/// The declared law and the sensors, as a record tells them.
+struct TwinConfig {
+  double sample_rate_hz{300.0};
+  double coulomb_mps2{0.0};                    ///< F / M
+  double stiffness_per_s2{0.0};                ///< k / M
+  double viscous_per_s{0.0};                   ///< c / M
+  double anti_alias_hz{0.0};                   ///< 0: none
+  std::array<double, kChannels> noise_mps2{};  ///< rms, what the resolution makes included
+  std::array<double, kChannels> step_mps2{};   ///< resolution; 0: unknown
+};
+
+/// The record that the declared law alone would have made: M z_b'' + k y + c v + F sign v = 0 on
+/// the measured motion of the wheelsets, seen by the same sensors. What the estimate leaves of it
+/// is the floor that no effect can take away.
+class Twin {
+ public:
+  explicit Twin(const TwinConfig& config);
+  /// Takes a sample; the twin's of the one before, where there is one. Samples that are no number
+  /// stay that, and a gap starts the motion anew.
+  [[nodiscard]] std::optional<Sample> next(const Sample& sample);
+
+ private:
+  struct Motion {
+    double deflection_m{0.0};
+    double velocity_mps{0.0};
+  };
+  [[nodiscard]] double frame_mps2(const Motion& m) const noexcept;
+  [[nodiscard]] Motion rate(const Motion& m, double input_mps2) const noexcept;
+  void step(double from_mps2, double to_mps2, double step_s) noexcept;
+  [[nodiscard]] std::array<double, 2> between(double u) const noexcept;
+  [[nodiscard]] Sample seen(const std::array<double, kChannels>& accel_mps2);
+  void restart() noexcept;
+
+  TwinConfig config_;
+  int parts_{1};  // of the law's steepest slope, in each fine step
+  sim::ButterworthLowPass<kChannels> filter_;
+  sim::Random noise_;
+  std::array<double, kChannels> white_mps2_{};
+  std::array<Sample, 4> held_{};  // oldest first
+  int count_{0};
+  Motion motion_{};
+};
+
+}  // namespace dampline::app

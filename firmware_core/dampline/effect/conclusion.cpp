@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/explanation.hpp"
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kUnexplainedAbove = 1.25;  // of the floor, without a single step
+constexpr double kUnexplainedAboveWithImpacts = 1.5;
+constexpr std::uint64_t kImpacts = 10;
+
+}  // namespace
+
+const char* name_of(Conclusion conclusion) noexcept {
+  switch (conclusion) {
+    case Conclusion::kNotReady:
+      return "not_ready";
+    case Conclusion::kComplete:
+      return "complete";
+    case Conclusion::kExplained:
+      return "explained";
+    case Conclusion::kPartlyExplained:
+      return "partly_explained";
+    case Conclusion::kUnexplained:
+      break;
+  }
+  return "unexplained";
+}
+
+double floor_ratio(const Explanation& e) noexcept {
+  if (!(e.floor_nmse > 0.0)) return 0.0;
+  double left = e.final.held_out_nmse;
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    if (e.step[i].chosen.effect == Effect::kImpulsiveInput) left *= 1.0 - e.step[i].gain;
+  }
+  return left / e.floor_nmse;
+}
+
+void conclude(std::uint64_t impacts, Explanation& e) noexcept {
+  const double ratio = floor_ratio(e);
+  const double limit = impacts >= kImpacts ? kUnexplainedAboveWithImpacts : kUnexplainedAbove;
+  if (e.step_count == 0) {
+    e.conclusion = ratio > limit ? Conclusion::kUnexplained : Conclusion::kComplete;
+  } else {
+    e.conclusion = ratio > kIncompleteAbove ? Conclusion::kPartlyExplained : Conclusion::kExplained;
+  }
+}
+
+void drop_steps(Explanation& e) noexcept {
+  e.step_count = 0;
+  e.model = e.base_model;
+  e.final = e.base;
+  e.weight = e.base_weight;
+  e.target = e.base_target;
+  e.floor_nmse = e.base_floor_nmse;
+  e.final_coulomb_n = e.base_coulomb_n;
+  e.final_stiffness_npm = e.base_stiffness_npm;
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// The twin against closed forms, and the floor that it gives against clean records, whose error is
+// the floor.
+#include "app/explain/twin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <memory>
+
+#include "dampline/effect/explainer.hpp"
+#include "dampline/guard/guard.hpp"
+#include "sim_hw/effects/registry.hpp"
+#include "sim_hw/presets.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kRateHz = 300.0;
+
+Sample sample_of(std::int64_t tick, double wheelset_mps2) {
+  Sample s;
+  s.tick = tick;
+  s.accel_mps2 = {99.0, wheelset_mps2, wheelset_mps2};  // the frame's own is not looked at
+  return s;
+}
+
+TEST(Twin, AnswersATonesAsALinearOscillatorDoes) {
+  TwinConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.viscous_per_s = 3.0;
+  Twin twin{config};
+  const double w = 2.0 * M_PI * 2.3;
+  // y'' + 2 c y' + 2 k y = -(a1 + a2); z_b'' = -(k y + c y')
+  const std::complex<double> y = -2.0 / std::complex<double>{2.0 * 141.4 - w * w, 2.0 * 3.0 * w};
+  const std::complex<double> expected = -y * std::complex<double>{141.4, 3.0 * w};
+  double worst = 0.0;
+  for (int n = 0; n < 6000; ++n) {
+    const auto out = twin.next(sample_of(n, std::cos(w * n / kRateHz)));
+    if (n < 3000 || !out) continue;
+    const double t = static_cast<double>(out->tick) / kRateHz;
+    const double truth = (expected * std::polar(1.0, w * t)).real();
+    worst = std::max(worst, std::abs(out->accel_mps2[0] - truth));
+    EXPECT_NEAR(out->accel_mps2[1], std::cos(w * t), 1e-9);
+  }
+  EXPECT_LT(worst, 1e-3 * std::abs(expected));
+}
+
+TEST(Twin, SticksUntilTheInputBreaksItLoose) {
+  TwinConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.coulomb_mps2 = 0.5;
+  Twin twin{config};
+  // Below the break-away level the frame follows the wheelsets: z_b'' = (z_1'' + z_2'') / 2.
+  double last = 0.0;
+  for (int n = 0; n < 900; ++n) {
+    const auto out = twin.next(sample_of(n, 0.3 * std::sin(2.0 * M_PI * 3.0 * n / kRateHz)));
+    if (out) last = out->accel_mps2[0] - out->accel_mps2[1];
+    if (n <= 300) continue;
+    EXPECT_NEAR(last, 0.0, 0.02);
+  }
+}
+
+TEST(Twin, HasTheNoiseAndTheResolutionOfTheSensors) {
+  TwinConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.noise_mps2 = {0.03, 0.03, 0.03};
+  config.step_mps2 = {0.02, 0.02, 0.02};
+  Twin twin{config};
+  double squares = 0.0;
+  int count = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const auto out = twin.next(sample_of(n, 0.0));
+    if (!out) continue;
+    const double codes = out->accel_mps2[1] / 0.02;
+    EXPECT_NEAR(codes, std::round(codes), 1e-9);
+    squares += out->accel_mps2[1] * out->accel_mps2[1];
+    ++count;
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), 0.03, 0.001);
+}
+
+TEST(Twin, KeepsGapsAndWhatIsNoNumber) {
+  Twin twin{TwinConfig{.stiffness_per_s2 = 141.4}};
+  int made = 0;
+  for (int n = 0; n < 20; ++n) {
+    const bool bad = n == 10;
+    const auto out =
+        twin.next(sample_of(n, bad ? std::numeric_limits<double>::quiet_NaN() : 0.1 * n));
+    if (!out) continue;
+    EXPECT_EQ(std::isnan(out->accel_mps2[1]), bad);
+    EXPECT_NE(out->tick, 9);
+    ++made;
+  }
+  EXPECT_EQ(made, 7 + 1 + 6);
+}
+
+struct Floor {
+  effect::Explanation explanation;
+  double truth{0.0};  // held-out nmse of the base on the record
+};
+
+/// A record of a condition, explained, with its floor; `effect` empty: clean.
+Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double noise_scale) {
+  sim::SimulationConfig config = sim::reference_run(load, speed_kmh, 91);
+  if (*effect != '\0') {
+    EXPECT_FALSE(sim::add_effect_text(config, effect));
+  }
+  config.sensors.noise_mps2 *= noise_scale;
+  sim::Simulation simulation{config};
+  IdentifierConfig core;
+  core.moving_mass_kg = config.truck.moving_mass_kg;
+  const auto identifier = std::make_unique<Identifier>(core);
+  const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
+  const auto guard = std::make_unique<Guard>(GuardConfig{});
+  std::vector<Sample> samples;
+  for (int n = 0; n < 200 * 300; ++n) {
+    samples.push_back(sim::to_sample(simulation.next()));
+    guard->update(samples.back());
+    diagnosis->update(samples.back(), identifier->update(samples.back()));
+  }
+  diagnosis->finish();
+  const auto explainer = std::make_unique<effect::Explainer>();
+  Floor out;
+  out.explanation = explainer->explain(*diagnosis, {.moving_mass_kg = core.moving_mass_kg});
+  effect::Explanation& e = out.explanation;
+  TwinConfig settings;
+  settings.stiffness_per_s2 = e.final_stiffness_npm.value / core.moving_mass_kg;
+  settings.coulomb_mps2 = e.final_coulomb_n.value / core.moving_mass_kg;
+  settings.anti_alias_hz = core.anti_alias.corner_hz;
+  for (std::size_t c = 0; c < kChannels; ++c) settings.noise_mps2[c] = guard->noise_mps2(c);
+  Twin twin{settings};
+  const auto again = std::make_unique<Identifier>(core);
+  const auto twins = std::make_unique<effect::Diagnosis>(core, diagnosis->scale_m());
+  for (const Sample& s : samples) {
+    const auto t = twin.next(s);
+    if (t) twins->update(*t, again->update(*t));
+  }
+  twins->finish();
+  EXPECT_TRUE(explainer->apply_floor(*twins, 0, e));
+  out.truth = e.base.held_out_nmse;
+  return out;
+}
+
+TEST(Floor, IsWhatACleanRecordLeaves) {
+  const struct {
+    sim::Load load;
+    double noise_scale;
+    double within;
+  } cases[]{
+      {sim::Load::kLaden, 1.0, 0.1}, {sim::Load::kEmpty, 1.0, 0.1}, {sim::Load::kLaden, 3.0, 0.15}};
+  for (const auto& c : cases) {
+    const Floor f = floor_of(c.load, 80.0, "", c.noise_scale);
+    EXPECT_EQ(f.explanation.step_count, 0U);
+    EXPECT_EQ(f.explanation.conclusion, effect::Conclusion::kComplete);
+    EXPECT_NEAR(f.explanation.floor_nmse / f.truth, 1.0, c.within);
+  }
+}
+
+TEST(Floor, TellsThatALawIsComplete) {
+  const Floor f = floor_of(sim::Load::kLaden, 80.0, "cubic_stiffness", 1.0);
+  ASSERT_EQ(f.explanation.step_count, 1U);
+  EXPECT_LT(floor_ratio(f.explanation), effect::kIncompleteAbove);
+  EXPECT_EQ(f.explanation.conclusion, effect::Conclusion::kExplained);
+}
+
+}  // namespace
+}  // namespace dampline::app
