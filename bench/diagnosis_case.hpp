@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdint>
-#include <memory>
+#include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "dampline/effect/explainer.hpp"
+#include "app/explain/explain_truck.hpp"
+#include "drivers/candump/line_writer.hpp"
 #include "sim_hw/effects/registry.hpp"
+#include "sim_hw/nodes.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/random.hpp"
+#include "sim_hw/transport.hpp"
 
 namespace dampline::bench {
 
@@ -115,6 +120,8 @@ inline void tell_truth(const sim::SimulationConfig& c, Planted& planted) {
 /// A record of a condition with effects planted, explained.
 struct DiagnosedRecord {
   effect::Explanation explanation;
+  bool withheld{false};
+  bool drifts{false};
   std::vector<Planted> planted;
   double coulomb_n{0.0};
   double stiffness_npm{0.0};
@@ -124,27 +131,43 @@ struct DiagnosedRecord {
   }
 };
 
+/// The frames of a simulated run as candump text.
+inline void write_record(const sim::SimulationConfig& config, double length_s,
+                         const std::string& path) {
+  sim::Simulation simulation{config};
+  sim::SensorNodes nodes{{}, config.seed};
+  sim::Transport transport{{}, config.seed};
+  fmt::memory_buffer text;
+  const auto samples = static_cast<std::int64_t>(length_s * sim::kSampleRateHz);
+  for (std::int64_t n = 0; n < samples; ++n) {
+    const sim::SimulatedSample sample = simulation.next();
+    for (const CanFrame& frame : transport.pass(nodes.pack(sample), sample.time_s))
+      drivers::append_candump(text, frame, "can0");
+  }
+  std::ofstream{path}.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+/// As `dampline explain` does it: guards, floor and all.
 inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted> planted,
-                                std::uint64_t seed, double length_s = 300.0) {
+                                std::uint64_t seed, double noise = 1.0) {
   sim::SimulationConfig config = sim::reference_run(condition.load, condition.speed_kmh, seed);
+  config.sensors.noise_mps2 *= noise;
   for (const Planted& p : planted) {
     if (const auto wrong = sim::add_effect_text(config, p.text)) throw std::runtime_error{*wrong};
   }
   for (Planted& p : planted) tell_truth(config, p);
-  sim::Simulation simulation{config};
-  IdentifierConfig core;
-  core.moving_mass_kg = config.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(core);
-  const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
-  const auto samples = static_cast<std::int64_t>(length_s * sim::kSampleRateHz);
-  for (std::int64_t n = 0; n < samples; ++n) {
-    const Sample sample = sim::to_sample(simulation.next());
-    diagnosis->update(sample, identifier->update(sample));
-  }
-  diagnosis->finish();
-  const auto explainer = std::make_unique<effect::Explainer>();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / fmt::format("diagnosis_{}.log", ::getpid()))
+          .string();
+  write_record(config, 300.0, path);
+  app::Config settings;
+  settings.car.moving_mass_kg = config.truck.moving_mass_kg;
+  const app::Explained found = app::explain_truck(settings, {{path, false}, {}, false});
+  std::filesystem::remove(path);
   DiagnosedRecord out;
-  out.explanation = explainer->explain(*diagnosis, {.moving_mass_kg = core.moving_mass_kg});
+  out.explanation = found.explanation;
+  out.withheld = found.withheld;
+  out.drifts = found.drifts;
   out.planted = std::move(planted);
   out.coulomb_n = 0.5 * (config.truck.friction_positive_n + config.truck.friction_negative_n);
   // The estimate's k is the mean of both sides.

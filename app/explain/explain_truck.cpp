@@ -3,35 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 #include <memory>
 
 #include "app/error.hpp"
-#include "app/explain/fault_veto.hpp"
 #include "app/explain/second_look.hpp"
 #include "app/explain/truck_pass.hpp"
 #include "app/explain/truck_points.hpp"
+#include "app/explain/truck_verdict.hpp"
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::app {
 namespace {
-
-bool has(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-effect::ExplainerConfig explainer_config(const Config& config) {
-  effect::ExplainerConfig out;
-  out.moving_mass_kg = config.car.moving_mass_kg;
-  out.base_viscous = has(config.model.base, "viscous");
-  const auto& wanted = config.model.candidates;
-  for (std::size_t i = 0; i < effect::kEffects; ++i) {
-    const char* name = effect::name_of(static_cast<effect::Effect>(i));
-    out.allowed[i] = (has(wanted, "all") || has(wanted, name)) && !has(config.model.base, name);
-  }
-  return out;
-}
 
 /// Predicts a record that took no part, and appends it to prediction.csv as the `number`-th.
 Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
@@ -66,13 +49,9 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
   const auto explainer = std::make_unique<effect::Explainer>();
-  out.explanation = explainer->explain(*pass.diagnosis, explainer_config(config));
-  if (out.explanation.conclusion == effect::Conclusion::kNotReady)
+  if (!judge_sums(config, *pass.diagnosis, *explainer, out))
     throw RunError{fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
                                options.source.path, pass.diagnosis->store().count())};
-  out.withheld = forbids_naming(out.identified.faults);
-  out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);
-  if (out.withheld || out.drifts) withhold_effects(out.explanation);
   look_again(config, options, pass, *explainer, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)

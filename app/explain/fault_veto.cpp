@@ -2,22 +2,29 @@
 #include "app/explain/fault_veto.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace dampline::app {
 namespace {
 
 constexpr double kMoreGain = 0.02;
 
-bool is_harmless(const FaultFinding& fault) {
-  const bool slip = fault.name == "lost_samples" || fault.name == "repeated_samples";
-  if (slip) return fault.channel == "all";
-  return fault.name == "stuck_channel" || fault.name == "wrong_sample_rate";
+bool is_harmless(std::string_view name, std::string_view channel) {
+  if (name == "lost_samples" || name == "repeated_samples") return channel == "all";
+  return name == "stuck_channel" || name == "wrong_sample_rate";
 }
 
 }  // namespace
 
 bool forbids_naming(const DataFaults& faults) noexcept {
-  return !std::all_of(faults.list.begin(), faults.list.end(), is_harmless);
+  return !std::all_of(faults.list.begin(), faults.list.end(),
+                      [](const FaultFinding& f) { return is_harmless(f.name, f.channel); });
+}
+
+bool forbids_naming(std::span<const Fault> faults) noexcept {
+  return !std::all_of(faults.begin(), faults.end(), [](const Fault& f) {
+    return is_harmless(name_of(f.kind), name_of(f.channel));
+  });
 }
 
 bool drift_explains_more(const DataFaults& faults,

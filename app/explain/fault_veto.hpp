@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <span>
+
 #include "app/run/faults.hpp"
 #include "dampline/effect/explanation.hpp"
+#include "dampline/guard/fault.hpp"
 
 namespace dampline::app {
 
 /// Whether a fault that the guards found makes the naming of an effect worthless. Samples that all
 /// channels lost or repeated, a stuck channel (left out) and a wrong rate do not.
 [[nodiscard]] bool forbids_naming(const DataFaults& faults) noexcept;
+
+/// The same of the guards' own list, without the heap.
+[[nodiscard]] bool forbids_naming(std::span<const Fault> faults) noexcept;
 
 /// Whether a parameter that changed explains more than the first effect does, by 2 % of the
 /// held-out error.

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
 
 #include "app/identify/truck_result.hpp"
 #include "dampline/estimate/statistics.hpp"
@@ -16,6 +17,7 @@ class FaultWatch {
   /// Precondition: Identifier::check(config).ok().
   explicit FaultWatch(const IdentifierConfig& config);
   void take(const Sample& sample) noexcept { guard_->update(sample); }
+  [[nodiscard]] std::span<const Fault> found() const noexcept { return guard_->faults(); }
   /// White noise of each channel, rms; 0: not known yet.
   [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
     std::array<double, kChannels> out{};

@@ -54,6 +54,8 @@ class TruckRun {
   [[nodiscard]] TruckView view() noexcept;
   /// When the first sample was taken, by its own time. Precondition: not empty().
   [[nodiscard]] std::int64_t first_time_ns() const noexcept { return first_time_ns_; }
+  /// Faults of the data, so far.
+  [[nodiscard]] std::span<const Fault> fault_kinds() const noexcept { return faults_.found(); }
   /// White noise of each channel, rms, what its resolution makes included; 0: not known yet.
   [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
     return faults_.noise_mps2();

@@ -34,6 +34,7 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       options_{options},
       outlets_{std::move(outlets)},
       truck_{config, screen_of(assembler.channels)},
+      explainer_{config, identifier_config(config), truck_},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},
       recorder_{*parts.sink, *parts.clock, acquisition_->items()},
@@ -45,12 +46,14 @@ Identified LiveRun::run() {
   note(hal::EventKind::kRunStart, parts_.run_time.offset_ns);
   lock_memory(realtime_);
   recorder_.start();
+  explainer_.start();
   std::thread acquisition{[this] { acquire(); }};
   ready_.wait();
   if (outlets_.begin) outlets_.begin(recorder_);
   watch(signals);
   acquisition_->stop();
   acquisition.join();
+  explainer_.stop();
   acquisition_->finish();
   note(hal::EventKind::kRunEnd, static_cast<std::int64_t>(parts_.source->health().frames));
   if (outlets_.end) outlets_.end();
@@ -93,8 +96,10 @@ void LiveRun::rotate() {
 
 void LiveRun::publish_when_fresh() {
   if (!acquisition_->status().take() || !outlets_.publish) return;
-  outlets_.publish(live_result(acquisition_->status().front(),
-                               surroundings(std::string{name_of(state_)}), config_));
+  RunResult result = live_result(acquisition_->status().front(),
+                                 surroundings(std::string{name_of(state_)}), config_);
+  result.evidence.explanation = explainer_.newest();
+  outlets_.publish(result);
 }
 
 LiveSurroundings LiveRun::surroundings(const std::string& state) const {
@@ -112,6 +117,7 @@ Identified LiveRun::conclude() {
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
   recorder_.events().describe(truck_.first_time_ns(), out.result);
+  out.result.evidence.explanation = explainer_.conclude(out.result);
   out.state = truck_.encoded_state();
   return out;
 }

@@ -8,6 +8,7 @@
 #include "app/config/config.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/acquisition.hpp"
+#include "app/live/live_explainer.hpp"
 #include "app/live/live_result.hpp"
 #include "app/live/monitor.hpp"
 #include "app/live/recorder.hpp"
@@ -70,6 +71,7 @@ class LiveRun {
   LiveOptions options_;
   LiveOutlets outlets_;
   TruckRun truck_;
+  LiveExplainer explainer_;
   std::unique_ptr<Acquisition> acquisition_;
   Recorder recorder_;
   Monitor monitor_;

@@ -174,6 +174,9 @@ std::string to_json(const RunResult& result) {
   if (result.kind == "truck") write_faults(result.faults, json);
   if (!result.methods.empty()) json["methods"] = methods(result);
   if (result.live) json["live"] = live(*result.live);
+  // Of a run that has ended the explanation is a file of its own.
+  if (result.live && result.live->state != "ended" && !result.evidence.explanation.empty())
+    json["explanation"] = Json::parse(result.evidence.explanation, nullptr, false);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/identify/can_channels.hpp"
 #include "app/live/acquisition.hpp"
+#include "app/live/live_explainer.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulated_source.hpp"
@@ -51,6 +52,7 @@ TEST(AcquisitionHeap, IsNotTouchedByAHundredThousandSamples) {
   Prepared source;
   const drivers::SystemClock clock;
   TruckRun run{{}};
+  LiveExplainer explainer{{}, identifier_config({}), run};
   AcquisitionConfig config;
   config.assembler = can_channels({});
   config.publish_interval_ns = 2'000'000;  // many snapshots

@@ -6,13 +6,20 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "app/error.hpp"
+#include "app/explain/explain_truck.hpp"
+#include "app/explain/explanation_json.hpp"
 #include "app/identify/can_channels.hpp"
 #include "dampline/sample/assembler.hpp"
+#include "drivers/candump/line_writer.hpp"
 #include "drivers/os/system_clock.hpp"
+#include "sim_hw/effects/registry.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulated_source.hpp"
 
@@ -128,6 +135,34 @@ TEST_F(LiveRunTest, GivesTheSameBytesAsTheSameFramesWithoutThreads) {
   EXPECT_EQ(sink_.events.back().value, kSamples * static_cast<std::int64_t>(kChannels));
   ASSERT_TRUE(found.result.live.has_value());
   EXPECT_EQ(found.result.live->state, "ended");
+}
+
+/// explanation.json of a file with these frames.
+nlohmann::json explanation_of(const std::vector<CanFrame>& frames) {
+  fmt::memory_buffer text;
+  for (const CanFrame& frame : frames) drivers::append_candump(text, frame, "can0");
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("dampline_live_equals_file_" + std::to_string(::getpid()) + ".log");
+  std::ofstream{path} << std::string_view{text.data(), text.size()};
+  const std::string found = to_json(explain_truck({}, {{path.string(), false}, {}, false}));
+  std::filesystem::remove(path);
+  return nlohmann::json::parse(found);
+}
+
+TEST_F(LiveRunTest, ExplainsWhatAFileOfTheSameFramesDoes) {
+  sim::SimulationConfig config = sim::reference_run(sim::Load::kLaden, 80.0, 6);
+  ASSERT_FALSE(sim::add_effect_text(config, "viscous:coefficient_nspm=110000"));
+  Paced source{std::make_unique<sim::SimulatedSource>(config, kSamples)};
+  const Identified found = run(source);
+  const auto live = nlohmann::json::parse(found.result.evidence.explanation);
+  const nlohmann::json file = explanation_of(sink_.frames);
+  EXPECT_EQ(live.at("steps").at(0).at("effect"), "viscous");
+  for (const char* key : {"verdict", "base", "final", "rejected", "faults"})
+    EXPECT_EQ(live.at(key), file.at(key)) << key;
+  ASSERT_EQ(live.at("steps").size(), file.at("steps").size());
+  for (const char* key : {"effect", "parameters", "held_out_nmse_after", "runners_up"})
+    EXPECT_EQ(live.at("steps").at(0).at(key), file.at("steps").at(0).at(key)) << key;
+  EXPECT_TRUE(live.at("floor_nmse").is_null());  // the frames are not read a second time
 }
 
 TEST_F(LiveRunTest, PublishesOnTheWayAndTellsWhenTheSignalIsLost) {

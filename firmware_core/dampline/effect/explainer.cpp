@@ -240,9 +240,9 @@ void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
   step.place_std = std::clamp(std::sqrt(2.0 * kRowsPerFact / (curvature * target)), 0.05, kGridStd);
 }
 
-Explanation Explainer::explain(const Diagnosis& diagnosis, const ExplainerConfig& config) noexcept {
+Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter, double scale_m,
+                               const ExplainerConfig& config) noexcept {
   Explanation out;
-  const GramStore& store = diagnosis.store();
   if (store.count() < kFewestEntries || !evidence_.load(store)) return out;
   allowed_ = config.allowed;
   if (config.base_viscous) {
@@ -258,7 +258,7 @@ Explanation Explainer::explain(const Diagnosis& diagnosis, const ExplainerConfig
   out.base_target = evidence_.total.at(kTarget, kTarget);
   while (forward(out, now)) now = settle(store, out.model);
   const bool impulses = allowed_[static_cast<std::size_t>(Effect::kImpulsiveInput)];
-  if (out.step_count == 0 && impulses) add_impulses(diagnosis.impulses(), now, out);
+  if (out.step_count == 0 && impulses) add_impulses(meter, now, out);
   backward(out, now);
   out.final = settle(store, out.model);
   out.weight = evidence_.weight;
@@ -267,7 +267,7 @@ Explanation Explainer::explain(const Diagnosis& diagnosis, const ExplainerConfig
     refine(out.model, out.base_count + i, out.final, out.step[i]);
   }
   out.floor_nmse = config.floor_nmse;
-  describe(config.moving_mass_kg, diagnosis.scale_m(), out);
+  describe(config.moving_mass_kg, scale_m, out);
   conclude(0, out);
   return out;
 }

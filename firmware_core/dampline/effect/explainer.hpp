@@ -30,7 +30,12 @@ class Explainer {
   Explainer& operator=(const Explainer&) = delete;
 
   [[nodiscard]] Explanation explain(const Diagnosis& diagnosis,
-                                    const ExplainerConfig& config) noexcept;
+                                    const ExplainerConfig& config) noexcept {
+    return explain(diagnosis.store(), diagnosis.impulses(), diagnosis.scale_m(), config);
+  }
+  /// The same of what was copied out of a Diagnosis that goes on.
+  [[nodiscard]] Explanation explain(const GramStore& store, const ImpulseMeter& impulses,
+                                    double scale_m, const ExplainerConfig& config) noexcept;
   /// NMSE of another record's rows by models that were fitted elsewhere; 0 when it has too few.
   /// Precondition: the other Diagnosis has the scale of the one that was explained.
   struct Prediction {

@@ -26,7 +26,18 @@ void GramStore::close(std::int64_t block) noexcept {
   if (pending_count_ == 1) start();
 }
 
+void GramStore::copy_part(const GramStore& from, std::size_t part) noexcept {
+  const std::size_t e = part / kScales;
+  const std::size_t scale = part % kScales;
+  entries_[e].gram[scale] = from.entries_[e].gram[scale];
+  entries_[e].rows[scale] = from.entries_[e].rows[scale];
+  entries_[e].blocks = from.entries_[e].blocks;
+  count_ = from.count_;
+  blocks_per_entry_ = from.blocks_per_entry_;
+}
+
 void GramStore::start() noexcept {
+  ++revision_;
   cursor_ = 0;
   const bool room = count_ > 0 && entries_[count_ - 1].blocks < blocks_per_entry_;
   phase_ = !room && count_ == kEffectEntries ? Phase::kCompact : Phase::kMerge;

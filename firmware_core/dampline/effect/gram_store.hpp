@@ -32,6 +32,14 @@ class GramStore {
   [[nodiscard]] const ScaleGrams& entry(std::size_t i) const noexcept { return entries_[i]; }
   [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept { return blocks_per_entry_; }
 
+  /// For a copy that is made part by part: how often the entries have begun to change, whether they
+  /// are changing now, and how many parts they have.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
+  [[nodiscard]] bool is_changing() const noexcept { return phase_ != Phase::kIdle; }
+  [[nodiscard]] std::size_t parts() const noexcept { return count_ * kScales; }
+  /// One matrix of another store's entries, with what belongs to it.
+  void copy_part(const GramStore& from, std::size_t part) noexcept;
+
  private:
   enum class Phase : std::uint8_t { kIdle, kCompact, kMerge };
   static constexpr std::size_t kSlots = 3;
@@ -46,6 +54,7 @@ class GramStore {
   std::array<ScaleGrams, kSlots> open_{};
   std::array<ScaleGrams, kEffectEntries> entries_{};
   std::size_t count_{0};
+  std::uint64_t revision_{0};
   Phase phase_{Phase::kIdle};
   std::size_t cursor_{0};
   std::array<std::size_t, kSlots> pending_{};

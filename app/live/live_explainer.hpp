@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "app/config/config.hpp"
+#include "app/identify/truck_run.hpp"
+#include "dampline/effect/diagnosis.hpp"
+#include "dampline/effect/explainer.hpp"
+#include "dampline/effect/store_copy.hpp"
+
+namespace dampline::app {
+
+/// The explanation of a live run: sums beside the estimate in the acquisition's thread, the
+/// judgement of the candidates in a thread of its own, which may take its time.
+class LiveExplainer {
+ public:
+  /// Watches `run` from now on, which outlives it. Nothing is allocated per sample.
+  LiveExplainer(const Config& config, const IdentifierConfig& core, TruckRun& run);
+  LiveExplainer(const LiveExplainer&) = delete;
+  LiveExplainer& operator=(const LiveExplainer&) = delete;
+  ~LiveExplainer();
+
+  void start();
+  void stop();
+  /// The newest explanation as explanation.json holds it; empty: there is none yet. Any thread.
+  [[nodiscard]] std::string newest() const;
+  /// After stop() and the last sample: explanation.json of the whole run, as of a file with the
+  /// same samples that can be read only once; empty when the run was too short.
+  [[nodiscard]] std::string conclude(const RunResult& identified);
+
+ private:
+  static constexpr double kEveryS = 8.0;  // between two beginnings
+  /// Who works: the acquisition waits or copies, or the judge has the copy.
+  enum class Turn : std::uint8_t { kWait, kCopy, kJudge };
+
+  void take(const Sample& sample, const UpdateResult& result) noexcept;
+  void judge();
+  void run();
+
+  Config whole_;
+  effect::ExplainerConfig config_;
+  const TruckRun& run_;
+  std::int64_t every_ticks_;
+  std::unique_ptr<effect::Diagnosis> diagnosis_;
+  std::unique_ptr<effect::StoreCopy> copy_;
+  effect::ImpulseMeter impulses_;
+  double scale_m_{0.0};
+  bool forbidden_{false};
+  std::int64_t next_tick_{0};
+  std::atomic<Turn> turn_{Turn::kWait};
+
+  std::unique_ptr<effect::Explainer> explainer_;
+  mutable std::mutex mutex_;
+  std::string newest_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace dampline::app
