@@ -21,7 +21,7 @@ bool forbids_naming(const DataFaults& faults) noexcept {
                       [](const FaultFinding& f) { return is_harmless(f.name, f.channel); });
 }
 
-bool forbids_naming(std::span<const Fault> faults) noexcept {
+bool faults_forbid_naming(std::span<const Fault> faults) noexcept {
   return !std::all_of(faults.begin(), faults.end(), [](const Fault& f) {
     return is_harmless(name_of(f.kind), name_of(f.channel));
   });

@@ -13,7 +13,7 @@ namespace dampline::app {
 [[nodiscard]] bool forbids_naming(const DataFaults& faults) noexcept;
 
 /// The same of the guards' own list, without the heap.
-[[nodiscard]] bool forbids_naming(std::span<const Fault> faults) noexcept;
+[[nodiscard]] bool faults_forbid_naming(std::span<const Fault> faults) noexcept;
 
 /// Whether a parameter that changed explains more than the first effect does, by 2 % of the
 /// held-out error.

@@ -42,7 +42,7 @@ void LiveExplainer::take(const Sample& sample, const UpdateResult& result) noexc
   } else if (turn == Turn::kCopy && copy_->step(diagnosis_->store())) {
     impulses_ = diagnosis_->impulses();
     scale_m_ = diagnosis_->scale_m();
-    forbidden_ = forbids_naming(run_.fault_kinds());
+    forbidden_ = faults_forbid_naming(run_.fault_kinds());
     turn_.store(Turn::kJudge, std::memory_order_release);
   }
 }
