@@ -9,6 +9,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "app/explain/rig/explain_rig.hpp"
 #include "app/run/evidence_tables.hpp"
@@ -95,10 +96,11 @@ struct Planted {
   bool spring;
 };
 
-RigExplanation explained(const Law& law, bool spring, std::uint64_t seed) {
+RigExplanation explained(const Law& law, bool spring, std::uint64_t seed,
+                         const std::vector<std::string>& base = {"coulomb", "viscous"}) {
   const dampline::testing::TemporaryFile file{record_of(law, seed), ".csv"};
   Config config;
-  config.model.base = {"coulomb", "viscous"};
+  config.model.base = base;
   config.model.stiffness = spring ? "identify" : "auto";
   return explain_rig(config, {{file.path()}, {}, "", false});
 }
@@ -139,6 +141,22 @@ INSTANTIATE_TEST_SUITE_P(
                          900.0 * m.velocity_mps;
                 },
                 false},
+        Planted{"progressive_friction",
+                [](const Motion& m, double) {
+                  const double grown = 1.0 + std::abs(m.deflection_m) / 0.013;
+                  return 300.0 * grown * sign(m.velocity_mps) + 900.0 * m.velocity_mps;
+                },
+                false},
+        Planted{"quadratic_stiffness",
+                [](const Motion& m, double s) {
+                  return simple()(m, s) + spring(m) + 7.0e5 * m.deflection_m * m.deflection_m;
+                },
+                true},
+        Planted{"asymmetric_stiffness",
+                [](const Motion& m, double s) {
+                  return simple()(m, s) + (m.deflection_m > 0.0 ? 1.6 : 1.0) * spring(m);
+                },
+                true},
         Planted{"cubic_stiffness",
                 [](const Motion& m, double s) {
                   const double x = m.deflection_m;
@@ -154,6 +172,18 @@ INSTANTIATE_TEST_SUITE_P(
     [](const ::testing::TestParamInfo<Planted>& tested) {
       return std::string{tested.param.effect};
     });
+
+TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
+  const RigExplanation friction = explained(simple(), false, 24, {"viscous"});
+  ASSERT_FALSE(friction.steps.empty());
+  EXPECT_EQ(friction.steps[0].effect, "coulomb") << summarize(friction);
+  ASSERT_FALSE(friction.steps[0].parameters.empty());
+  EXPECT_NEAR(friction.steps[0].parameters[0].value, 300.0, 6.0);
+  const RigExplanation damping = explained(simple(), false, 25, {"coulomb"});
+  ASSERT_FALSE(damping.steps.empty());
+  EXPECT_EQ(damping.steps[0].effect, "viscous") << summarize(damping);
+  EXPECT_NEAR(damping.steps[0].parameters[0].value, 900.0, 45.0);
+}
 
 TEST(ARig, LacksNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {21U, 22U, 23U}) {

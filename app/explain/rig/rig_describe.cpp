@@ -32,7 +32,7 @@ void RigSearch::describe(RigModel& model, const Judged& judged, const ColumnSet&
       model.parameters.push_back({"viscous", value, std, "N s/m"});
     else if (column.kind == Kind::kOne)
       model.parameters.push_back({"offset", value, std, "N"});
-    else if (set[i] == library_.friction[judged.width])
+    else if (library_.base_friction && set[i] == library_.friction[judged.width])
       model.parameters.push_back({"coulomb", value, std, "N"});
   }
 }
@@ -43,6 +43,8 @@ void RigSearch::describe_small(Chosen& c, const Estimate& first) const {
   auto& out = c.step.parameters;
   if (effect == "quadratic_damping") {
     out.push_back({effect, first.value, first.std, "N s^2/m^2"});
+  } else if (effect == "coulomb") {
+    out.push_back({effect, first.value, first.std, "N"});
   } else if (effect == "offset_force") {
     out.push_back({"offset", first.value, first.std, "N"});
   } else if (effect == "stribeck") {

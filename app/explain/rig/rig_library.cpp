@@ -134,6 +134,10 @@ RigLibrary make_library(const Config& config, const RigScale& scale) {
     return std::find(wanted.begin(), wanted.end(), "all") != wanted.end() ||
            std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
+  if (!out.base_friction) {
+    for (const Eigen::Index sign : out.friction)
+      out.candidates.push_back({"coulomb", 0.0, {sign}, 1});
+  }
   if (!out.base_offset) out.candidates.push_back({"offset_force", 0.0, {out.offset}, 0});
   std::erase_if(out.candidates, [&](const RigCandidate& c) { return !is_wanted(c.effect); });
   return out;

@@ -19,6 +19,7 @@ constexpr double kBankFrom = 0.4;  // travels that are tried, of the smallest fo
 constexpr double kBankTo = 2.1;
 constexpr double kBankStep = 1.15;
 constexpr std::size_t kBankSpread = 3;  // steps between the three travels of a bank
+constexpr double kAlike = 0.01;         // of what either leaves
 constexpr std::size_t kMostSteps = 4;
 constexpr std::size_t kRunnersUp = 4;
 
@@ -43,6 +44,25 @@ ColumnSet joined(ColumnSet a, const ColumnSet& b) {
   for (const Eigen::Index i : b)
     if (std::find(a.begin(), a.end(), i) == a.end()) a.push_back(i);
   return a;
+}
+
+/// The best candidate of an effect.
+struct Best {
+  const RigCandidate* candidate{nullptr};
+  double gain{0.0};
+  double t{0.0};
+  double nmse{0.0};
+};
+
+/// Of candidates that explain alike, the one with the fewest coefficients comes first.
+void prefer_plain(std::vector<Best>& order) {
+  std::size_t pick = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const bool alike = order[i].nmse <= (1.0 + kAlike) * order[0].nmse;
+    const bool plainer = order[i].candidate->columns.size() < order[pick].candidate->columns.size();
+    if (alike && plainer) pick = i;
+  }
+  std::swap(order[0], order[pick]);
 }
 
 /// The hats of an element; the middle one of all but the first would be the first's again.
@@ -116,12 +136,6 @@ bool RigSearch::forward() {
   const Judged before = judge(now);
   const Judged beside_spring = judge(joined(now, {library_.spring}));
   const Judged beside_both = judge(joined(now, {library_.spring, library_.offset}));
-  struct Best {
-    const RigCandidate* candidate{nullptr};
-    double gain{0.0};
-    double t{0.0};
-    double nmse{0.0};
-  };
   std::map<std::string, Best> best;
   for (const RigCandidate& c : library_.candidates) {
     if (!can_add(c)) continue;
@@ -143,6 +157,7 @@ bool RigSearch::forward() {
   std::sort(order.begin(), order.end(),
             [](const Best& a, const Best& b) { return a.gain > b.gain; });
   if (order.empty()) return false;
+  prefer_plain(order);
   const Best& top = order.front();
   const bool passes = chosen_.empty()
                           ? top.gain > kClearGain || (top.gain > kSmallGain && top.t > kSignificant)
