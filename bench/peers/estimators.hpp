@@ -46,7 +46,7 @@ class Ours {
   }
 
  private:
-  RecursiveEstimate<N> estimate_;
+  mutable RecursiveEstimate<N> estimate_;  // rows wait in it until somebody asks
 };
 
 /// The same, fed as the Identifier feeds it: rows of a standstill are left out, and with them the
@@ -85,6 +85,27 @@ class EigenCovariance {
     const double denominator = forgetting_ + x.dot(px);
     theta_ += px * ((y - x.dot(theta_)) / denominator);
     p_.noalias() -= px * (px.transpose() / denominator);
+    if (forgetting_ < 1.0) p_ /= forgetting_;
+  }
+  [[nodiscard]] Column<N> answer() const noexcept { return theta_; }
+
+ private:
+  double forgetting_;
+  Eigen::Matrix<double, N, N> p_ = kPriorVariance * Eigen::Matrix<double, N, N>::Identity();
+  Column<N> theta_ = Column<N>::Zero();
+};
+
+/// The same, but only one triangle is updated and read, so that the matrix cannot lose its
+/// symmetry.
+template <int N>
+class EigenSymmetric {
+ public:
+  explicit EigenSymmetric(double forgetting) : forgetting_{forgetting} {}
+  void absorb(const Column<N>& x, double y) noexcept {
+    const Column<N> px = p_.template selfadjointView<Eigen::Lower>() * x;
+    const double denominator = forgetting_ + x.dot(px);
+    theta_ += px * ((y - x.dot(theta_)) / denominator);
+    p_.template selfadjointView<Eigen::Lower>().rankUpdate(px, -1.0 / denominator);
     if (forgetting_ < 1.0) p_ /= forgetting_;
   }
   [[nodiscard]] Column<N> answer() const noexcept { return theta_; }

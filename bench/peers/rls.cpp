@@ -43,6 +43,7 @@ class Race {
     enter<Ours<N>>("dampline");
     enter<OursSolved<N>>("dampline, solved after every row");
     enter<EigenCovariance<N>>("Eigen, covariance recursion");
+    enter<EigenSymmetric<N>>("Eigen, one triangle of the covariance");
 #ifdef DAMPLINE_HAS_DLIB
     enter<Dlib<N>>("dlib::rls");
 #endif

@@ -133,6 +133,7 @@ int run(int argc, char** argv) {
   compete<OursGated<kUnknowns>>("dampline, standstill left out as the Identifier does", hours, out);
   compete<Ours<kUnknowns>>("dampline, given every row", hours, out);
   compete<EigenCovariance<kUnknowns>>("Eigen, covariance recursion", hours, out);
+  compete<EigenSymmetric<kUnknowns>>("Eigen, one triangle of the covariance", hours, out);
 #ifdef DAMPLINE_HAS_DLIB
   compete<Dlib<kUnknowns>>("dlib::rls", hours, out);
   compete<DlibForgetful<kUnknowns>>("dlib::rls, forgetting its prior too", hours, out);

@@ -198,7 +198,7 @@ void Identifier::take_velocity(std::int64_t n, double velocity_mps, UpdateResult
   }
   const auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
   if (!average_.complete()) return;
-  if (first_law_ < 0) first_law_ = n - 1;
+  if (first_law_ < 0) begin_raster(n - 1);
   rows_.set_law(n - 1, columns, still);
   build_rows(n - 1);
 }
@@ -213,14 +213,24 @@ void Identifier::count_velocity(double velocity_mps, bool still) noexcept {
   ++side[nearest_node(config_.curve_nodes_mps, speed)];
 }
 
+// Centres lie on a fixed raster of ticks, of its own phase per scale: stride / 2.
+void Identifier::begin_raster(std::int64_t first_law) noexcept {
+  first_law_ = first_law;
+  for (std::size_t s = 0; s < kScales; ++s) {
+    const int stride = rows_.bank().stride(s);
+    const std::int64_t phase = (stretch_tick_ + first_law - rows_.bank().half(s)) % stride;
+    raster_[s] = static_cast<int>(phase < 0 ? phase + stride : phase);
+  }
+}
+
 void Identifier::build_rows(std::int64_t newest) noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {
+    const int stride = rows_.bank().stride(s);
+    const bool on_raster = raster_[s] == stride / 2;
+    if (++raster_[s] == stride) raster_[s] = 0;
     const int half = rows_.bank().half(s);
     const std::int64_t centre = newest - half;
-    if (centre - half < first_law_) continue;
-    // Centres lie on a fixed raster of ticks, of its own phase per scale.
-    const int stride = rows_.bank().stride(s);
-    if ((stretch_tick_ + centre) % stride == stride / 2) build_row(s, centre);
+    if (on_raster && centre - half >= first_law_) build_row(s, centre);
   }
 }
 

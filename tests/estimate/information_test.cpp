@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
+#include <cmath>
 #include <random>
 
 #include "dampline/estimate/cholesky.hpp"
@@ -123,6 +125,48 @@ TEST(Information, NeverTakesNotANumberForASolution) {
   ab(7, 3) = std::nan("");
   Factor::Vector theta;
   EXPECT_FALSE(factor_of(ab).solve(theta));
+}
+
+Factor factor_of_panels(const Eigen::MatrixXd& ab) {
+  Factor out;
+  for (int i = 0; i < ab.rows(); i += 5) {
+    std::array<Factor::Row, 5> panel;
+    for (int m = 0; m < 5; ++m) panel[static_cast<std::size_t>(m)] = ab.row(i + m).transpose();
+    out.absorb_panel(panel);
+  }
+  return out;
+}
+
+TEST(Information, TakesPanelsAsWellAsRows) {
+  Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 16);
+  ab.col(1) = ab.col(0) + 1e-7 * ab.col(1);  // the normal equations would leave two digits
+  ab.col(2).setZero();
+  ab.col(2)[37] = 1.0;
+  ab.col(kUnknowns) = ab.leftCols(kUnknowns) * Eigen::VectorXd::Ones(kUnknowns);
+  const Factor panels = factor_of_panels(ab);
+  Factor::Vector theta;
+  ASSERT_TRUE(panels.solve(theta));
+  EXPECT_LT((theta - Factor::Vector::Ones()).norm(), 1e-7);
+  const auto gram = factor_of(ab).gram();
+  EXPECT_LT((panels.gram() - gram).norm() / gram.norm(), 1e-14);
+}
+
+TEST(Information, TakesPanelsAfterWhatHasFadedBelowTheSmallestNumbers) {
+  const Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 17);
+  Factor factor = factor_of_panels(ab.topRows(20));
+  for (int i = 0; i < 8'000; ++i) factor.scale(0.83);
+  factor.merge(factor_of_panels(1e-160 * ab.topRows(20)));
+  factor.merge(factor_of_panels(ab.bottomRows(40)));
+  Factor::Vector theta;
+  ASSERT_TRUE(factor.solve(theta));
+  EXPECT_LT((theta - dense_solution(ab.bottomRows(40))).norm(), 1e-12 * theta.norm());
+}
+
+TEST(Information, NeverTakesAPanelWithNotANumberForASolution) {
+  Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 18);
+  ab(17, 2) = std::nan("");
+  Factor::Vector theta;
+  EXPECT_FALSE(factor_of_panels(ab).solve(theta));
 }
 
 // What hours of forgetting at a standstill leave of a factor; it must not become 0 / 0.

@@ -86,6 +86,22 @@ TEST(RecursiveEstimate, ForgetsWithItsTimeConstant) {
   EXPECT_NEAR(recursive.rows(), 1.0 / (1.0 - std::exp(-0.01)), 1e-6);
 }
 
+TEST(RecursiveEstimate, IsTheSameWhetherAskedAfterEveryRowOrAtTheEnd) {
+  const std::vector<Row> rows = duffing_rows(1003, 1003);  // not a whole number of panels
+  RecursiveEstimate<3> often{200.0};
+  RecursiveEstimate<3> once{200.0};
+  for (const Row& row : rows) {
+    often.absorb(row);
+    once.absorb(row);
+    static_cast<void>(often.information());
+  }
+  ASSERT_TRUE(often.update());
+  ASSERT_TRUE(once.update());
+  EXPECT_LT(difference(once.latest().theta, often.latest().theta), 1e-12);
+  EXPECT_NEAR(once.latest().residual_rms, often.latest().residual_rms, 1e-12);
+  EXPECT_NEAR(once.information().at(0, 0), often.information().at(0, 0), 1e-10);
+}
+
 TEST(RecursiveEstimate, HoldsWhereTheRowsDoNotDetermineIt) {
   RecursiveEstimate<3> recursive;
   Row row;

@@ -38,11 +38,11 @@ class LawColumns {
   /// Rows 0...9: erf(0.8862 v / w_i), no unit; rows 10...17: ramp_i(|v|) sign v, m/s.
   [[nodiscard]] Values operator()(double velocity_mps) const noexcept {
     Values out;
-    for (std::size_t i = 0; i < kLawWidths; ++i) {
-      out[static_cast<int>(i)] = erf_table(slope_[i] * velocity_mps);
-    }
     const double speed = std::abs(velocity_mps);
-    const double sign = velocity_mps < 0.0 ? -1.0 : 1.0;
+    const double sign = std::copysign(1.0, velocity_mps);
+    for (std::size_t i = 0; i < kLawWidths; ++i) {
+      out[static_cast<int>(i)] = sign * erf_of_magnitude(slope_[i] * speed);
+    }
     for (std::size_t i = 0; i < kCurveSegments; ++i) {
       out[static_cast<int>(kLawWidths + i)] =
           sign * std::min(std::max(speed - left_mps_[i], 0.0), length_mps_[i]);

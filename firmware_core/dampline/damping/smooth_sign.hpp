@@ -33,16 +33,21 @@ inline constexpr std::array<float, kErfSize> kErfTable = make_erf_table();
 
 }  // namespace detail
 
-/// erf by a table made at compile time, so that it is the same on every machine; error below 2e-6.
-inline double erf_table(double x) noexcept {
-  const double magnitude = std::abs(x);
+/// erf of a number that is not negative; 1 for what is none.
+inline double erf_of_magnitude(double magnitude) noexcept {
   // NaN must not become an index.
-  if (!(magnitude < detail::kErfLimit)) return std::copysign(1.0, x);
+  if (!(magnitude < detail::kErfLimit)) return 1.0;
   const double position = magnitude * detail::kErfPerUnit;
-  const auto i = static_cast<std::size_t>(position);
+  const int whole = static_cast<int>(position);
+  const auto i = static_cast<std::size_t>(whole);
   const double below{detail::kErfTable[i]};
   const double above{detail::kErfTable[i + 1]};
-  return std::copysign(below + (position - static_cast<double>(i)) * (above - below), x);
+  return below + (position - whole) * (above - below);
+}
+
+/// erf by a table made at compile time, so that it is the same on every machine; error below 2e-6.
+inline double erf_table(double x) noexcept {
+  return std::copysign(erf_of_magnitude(std::abs(x)), x);
 }
 
 /// sqrt(pi) / 2: erf(kSignSlope v / w) has slope 1 / w at v = 0.

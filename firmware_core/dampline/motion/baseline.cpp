@@ -30,6 +30,7 @@ constexpr std::array<double, 4> cubic_b_spline(double u) noexcept {
 
 Baseline::Baseline(int decimation) noexcept
     : decimation_{decimation}, box_half_{3 * (decimation - 1) / 2} {
+  reset();
   // Box convolved with box convolved with box, by counting: how many triples add up to i.
   const double scale = 1.0 / (static_cast<double>(decimation) * decimation * decimation);
   for (int a = 0; a < decimation; ++a) {
@@ -61,18 +62,22 @@ void Baseline::low_rate_step(std::int64_t instant) noexcept {
 bool Baseline::update(double x, double& out) noexcept {
   const std::int64_t n = count_++;
   ring_[static_cast<std::size_t>(n) & (kRing - 1)] = x;
-  const std::int64_t boxed = n - box_half_;
-  if (boxed >= std::int64_t{kFirstBox} * decimation_ && boxed % decimation_ == 0)
-    low_rate_step(boxed / decimation_);
+  if (n == next_box_) {
+    low_rate_step(instant_++);
+    next_box_ += decimation_;
+  }
   const std::int64_t e = n - delay();
   if (e < first()) return false;
-  const std::int64_t knot = e / decimation_;
-  const auto& b = spline_[static_cast<std::size_t>(e % decimation_)];
+  const auto& b = spline_[place_];
   double slow = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
-    slow += b[i] * coefficients_[(static_cast<std::size_t>(knot) + i - 1) & 7U];
+    slow += b[i] * coefficients_[(static_cast<std::size_t>(knot_) + i - 1) & 7U];
   }
   out = at(e) - slow;
+  if (++place_ == static_cast<std::size_t>(decimation_)) {
+    place_ = 0;
+    ++knot_;
+  }
   return true;
 }
 

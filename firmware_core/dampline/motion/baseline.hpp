@@ -28,7 +28,13 @@ class Baseline {
   /// Takes x_n. True when `out` was set to x_(n-delay()) less its slow part.
   bool update(double x, double& out) noexcept;
 
-  void reset() noexcept { count_ = 0; }
+  void reset() noexcept {
+    count_ = 0;
+    instant_ = kFirstBox;
+    next_box_ = box_half_ + kFirstBox * decimation_;
+    knot_ = kFirstBox + kTapsHalf + 1;
+    place_ = 0;
+  }
   /// Subtracts a constant from everything stored; the output does not change.
   void rebase(double amount) noexcept;
 
@@ -51,6 +57,11 @@ class Baseline {
   int box_half_;
   Corner corner_{Corner::k0p7Hz};
   std::int64_t count_{0};
+  // Counted along, because a division costs more than everything else that a sample needs.
+  std::int64_t instant_{0};   // the next of the low rate
+  std::int64_t next_box_{0};  // the sample that completes its boxes
+  std::int64_t knot_{0};      // of the next value that comes out
+  std::size_t place_{0};      // samples behind it
   std::array<double, kMaxBox> box_{};
   std::array<std::array<double, 4>, kMaxDecimation> spline_{};
   std::array<double, 32> low_{};          // box outputs, ring by low-rate instant

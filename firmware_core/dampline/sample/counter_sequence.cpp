@@ -30,6 +30,7 @@ void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
 std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
   const std::uint64_t ahead = (counter - newest_counter_) & mask_;
   const double due_ahead = due_tick - static_cast<double>(newest_);
+  if (ahead == 1 && std::abs(due_ahead - 1.0) < 0.49 * wrap_) return newest_ + 1;  // the usual one
   const double wraps = std::nearbyint((due_ahead - static_cast<double>(ahead)) / wrap_);
   // Modulo 2^64 on purpose: a counter of 64 bits that goes back one wraps to a step of -1.
   const std::uint64_t step =

@@ -47,11 +47,24 @@ struct SignalBytes {
   return bytes_needed(signal) <= 64;
 }
 
-/// The signal's bits, right-aligned. kMalformed when the frame is too short for it.
-/// Precondition: is_valid(signal). At most nine steps.
-[[nodiscard]] constexpr Result<std::uint64_t> extract_bits(const SignalLayout& signal,
-                                                           const CanFrame& frame) noexcept {
-  if (bytes_needed(signal) > frame.length) return Errc::kMalformed;
+/// Eight bytes from `first` on as one number, the first byte the least significant; written so that
+/// compilers make one load of it.
+[[nodiscard]] constexpr std::uint64_t intel_word(const std::uint8_t* first) noexcept {
+  const auto byte = [first](int i) { return std::uint64_t{first[i]}; };
+  return byte(0) | byte(1) << 8U | byte(2) << 16U | byte(3) << 24U | byte(4) << 32U |
+         byte(5) << 40U | byte(6) << 48U | byte(7) << 56U;
+}
+
+/// The first byte the most significant.
+[[nodiscard]] constexpr std::uint64_t motorola_word(const std::uint8_t* first) noexcept {
+  const auto byte = [first](int i) { return std::uint64_t{first[i]}; };
+  return byte(0) << 56U | byte(1) << 48U | byte(2) << 40U | byte(3) << 32U | byte(4) << 24U |
+         byte(5) << 16U | byte(6) << 8U | byte(7);
+}
+
+/// Bits of a signal byte by byte; a signal of 64 bits may touch nine.
+[[nodiscard]] constexpr std::uint64_t gather_bits(const SignalLayout& signal,
+                                                  const CanFrame& frame) noexcept {
   const SignalBytes bytes = bytes_of(signal);
   const auto byte = [&](int i) -> std::uint64_t {
     const int index = bytes.first + i * bytes.step;
@@ -60,9 +73,25 @@ struct SignalBytes {
   std::uint64_t bits = byte(0) >> bytes.shift;
   for (int i = 1; i < bytes.count; ++i)
     bits |= byte(i) << (8U * static_cast<unsigned>(i) - bytes.shift);
-  const std::uint64_t mask =
-      signal.length == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << signal.length) - 1;
-  return bits & mask;
+  return bits;
+}
+
+/// The signal's bits, right-aligned. kMalformed when the frame is too short for it.
+/// Precondition: is_valid(signal). At most nine steps.
+[[nodiscard]] constexpr Result<std::uint64_t> extract_bits(const SignalLayout& signal,
+                                                           const CanFrame& frame) noexcept {
+  if (bytes_needed(signal) > frame.length) return Errc::kMalformed;
+  const unsigned first = signal.start_bit / 8U;
+  const unsigned bit = signal.start_bit % 8U;
+  const unsigned unused = 64U - signal.length;
+  const bool intel = signal.order == ByteOrder::kIntel;
+  const unsigned before = intel ? bit : 7U - bit;  // bits of the word in front of the signal
+  if (before > unused || first + 8U > frame.data.size()) {
+    return gather_bits(signal, frame) << unused >> unused;
+  }
+  const std::uint8_t* const bytes = frame.data.data() + first;
+  if (intel) return intel_word(bytes) << (unused - before) >> unused;
+  return motorola_word(bytes) << before >> unused;
 }
 
 /// The raw number, sign-extended where the signal is signed. An unsigned number of 64 bits wraps.

@@ -36,11 +36,10 @@ class TickLine {
     const double half_ns = 0.5 * period_ns_;
     const double error_ns =
         std::clamp(static_cast<double>(time_ns - time_ns_) - predicted_ns, -half_ns, half_ns);
-    frames_ = std::min(frames_ + 1.0, kMemory);
-    const double g = 2.0 * (2.0 * frames_ - 1.0) / (frames_ * (frames_ + 1.0));
-    const double h = 6.0 / (frames_ * (frames_ + 1.0));
-    phase_ns_ = predicted_ns + g * error_ns;
-    period_ns_ = std::clamp(period_ns_ + h * error_ns / steps, shortest_ns_, longest_ns_);
+    if (frames_ < kMemory) set_gains(frames_ + 1.0);
+    phase_ns_ = predicted_ns + phase_gain_ * error_ns;
+    period_ns_ =
+        std::clamp(period_ns_ + period_gain_ * error_ns / steps, shortest_ns_, longest_ns_);
     tick_ = tick;
     const double whole_ns = std::floor(phase_ns_);
     time_ns_ += static_cast<std::int64_t>(whole_ns);
@@ -50,12 +49,20 @@ class TickLine {
   [[nodiscard]] std::int64_t time_ns() const noexcept { return time_ns_; }
 
  private:
+  void set_gains(double frames) noexcept {
+    frames_ = frames;
+    phase_gain_ = 2.0 * (2.0 * frames - 1.0) / (frames * (frames + 1.0));
+    period_gain_ = 6.0 / (frames * (frames + 1.0));
+  }
+
   static constexpr double kMemory = 128.0;
   static constexpr double kPrior = 16.0;  // the nominal period counts as so many frames
   std::int64_t tick_{0};
   std::int64_t time_ns_{0};
   double phase_ns_{0.0};  // below one nanosecond; keeps what time_ns_ cannot
   double frames_{kPrior};
+  double phase_gain_{0.0};
+  double period_gain_{0.0};
   double period_ns_;
   double shortest_ns_;
   double longest_ns_;

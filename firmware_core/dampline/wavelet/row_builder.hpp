@@ -34,6 +34,7 @@ class RowBuilder {
   void set_law(std::int64_t n, const LawColumns::Values& values, bool still) noexcept {
     law_[law(n)] = values;
     still_[law(n)] = still ? 1.0F : 0.0F;
+    if (still) newest_still_ = n;
   }
 
   /// The row of a scale centred on sample n. Needs the law at n - half...n + half and
@@ -44,6 +45,9 @@ class RowBuilder {
   [[nodiscard]] double still_share(std::size_t scale, std::int64_t n) const noexcept;
 
  private:
+  /// Stiffness, viscous, target.
+  [[nodiscard]] Eigen::Vector3d linear_columns(std::size_t scale, std::int64_t n) const noexcept;
+
   static constexpr std::size_t kRawRing = 2048;
   static constexpr std::size_t kLawRing = 2 * static_cast<std::size_t>(WindowBank::kMaxHalf) + 2;
   static std::size_t raw(std::int64_t n) noexcept {
@@ -56,6 +60,7 @@ class RowBuilder {
   std::array<double, kRawRing> relative_mps2_{};
   std::array<LawColumns::Values, kLawRing> law_{};
   std::array<float, kLawRing> still_{};
+  std::int64_t newest_still_{-1};  // of an earlier stretch perhaps; then too large at worst
 };
 
 }  // namespace dampline
