@@ -122,6 +122,7 @@ struct DiagnosedRecord {
   effect::Explanation explanation;
   bool withheld{false};
   bool drifts{false};
+  std::string faults;
   std::vector<Planted> planted;
   double coulomb_n{0.0};
   double stiffness_npm{0.0};
@@ -168,6 +169,8 @@ inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted>
   out.explanation = found.explanation;
   out.withheld = found.withheld;
   out.drifts = found.drifts;
+  for (const app::FaultFinding& f : found.identified.faults.list)
+    out.faults += fmt::format(" {} {} at {:.0f} s", f.name, f.channel, f.time_s);
   out.planted = std::move(planted);
   out.coulomb_n = 0.5 * (config.truck.friction_positive_n + config.truck.friction_negative_n);
   // The estimate's k is the mean of both sides.

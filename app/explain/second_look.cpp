@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/explain/second_look.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -13,7 +14,22 @@ namespace dampline::app {
 namespace {
 
 constexpr double kLeastTurn = 0.05;  // of the deflection's rms: smaller ones are noise
+constexpr double kOneKind = 3.0;     // of powers of noise
 constexpr double kLawReach = 2.5;    // of the velocity's rms
+
+/// What the wheelsets do not share counts as their noise, and aliasing adds to it. Where sensors
+/// may be of one kind, the frame's noise, which is measured apart from its motion, is that of all.
+std::array<double, kChannels> noise_of(std::array<double, kChannels> seen_mps2,
+                                       const std::array<double, kChannels>& step_mps2) {
+  const auto rounding = [&](std::size_t c) { return step_mps2[c] * step_mps2[c] / 12.0; };
+  const double frame = seen_mps2[0] * seen_mps2[0] - rounding(0);
+  for (std::size_t c = 1; c < kChannels; ++c) {
+    const double own = seen_mps2[c] * seen_mps2[c] - rounding(c);
+    if (frame > 0.0 && own > frame && own < kOneKind * frame)
+      seen_mps2[c] = std::sqrt(frame + rounding(c));
+  }
+  return seen_mps2;
+}
 
 /// The declared law beside the effects that were found, per unit of mass. With a mass on the frame
 /// every coefficient of the fit is of all mass, and friction and spring are of the frame's own.
@@ -26,7 +42,7 @@ TwinConfig twin_config(const IdentifierConfig& core, const effect::Explanation& 
   out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
   if (e.base_count > 0) out.viscous_per_s = e.final.theta[effect::ModelFit::kFirstEffect];
   out.anti_alias_hz = core.anti_alias.corner_hz;
-  out.noise_mps2 = noise_mps2;
+  out.noise_mps2 = noise_of(noise_mps2, core.screen.step_mps2);
   out.step_mps2 = core.screen.step_mps2;
   return out;
 }

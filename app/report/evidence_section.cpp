@@ -136,10 +136,14 @@ std::string validation_section(const Evidence& evidence) {
   if (evidence.explanation.empty()) return "";
   std::vector<std::vector<std::string>> rows;
   bool reference = false;
+  std::string starts;
   const Json json = json_of(evidence);
   for (const Json& v : list_at(json, "validation")) {
     const bool has = v.contains("rrse_reference");
     reference = reference || has;
+    if (v.contains("start_slip_m"))
+      starts += fmt::format("{}{:.1f} mm", starts.empty() ? "" : ", ",
+                            1e3 * number_at(v, "start_slip_m"));
     rows.push_back({word_at(v, "record"), fmt::format("{:.3f}", number_at(v, "rrse_before")),
                     fmt::format("{:.3f}", number_at(v, "rrse_after")),
                     has ? fmt::format("{:.3f}", number_at(v, "rrse_after_where_reference")) : "",
@@ -152,7 +156,13 @@ std::string validation_section(const Evidence& evidence) {
     header.resize(3);
     for (auto& row : rows) row.resize(3);
   }
-  return html_table(header, rows, header.size() - 1);
+  std::string out = html_table(header, rows, header.size() - 1);
+  if (!starts.empty())
+    out += fmt::format(
+        "<p>Where in its play the rig stands at the start is unknown: the first second of measured "
+        "force sets it ({}), and nothing else is taken from the force.</p>\n",
+        starts);
+  return out;
 }
 
 }  // namespace dampline::app

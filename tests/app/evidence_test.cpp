@@ -38,7 +38,7 @@ Evidence some_evidence() {
     "rejected": [{"effect": "stribeck", "held_out_nmse": 0.0299, "gain": 0.003, "block_t": 0.7}],
     "floor_nmse": 0.01, "left_over_floor": 3.0,
     "validation": [{"record": "<other>.csv", "rrse_before": 0.61, "rrse_after": 0.22,
-                    "rrse_reference": 0.4, "rrse_after_where_reference": 0.21}],
+                    "rrse_reference": 0.4, "start_slip_m": 0.0031, "rrse_after_where_reference": 0.21}],
     "signature": {"text": "120 N rms; <memoryless>"}})";
   for (const char* over : {"deflection_m", "velocity_mps", "frequency_hz", "time_s"})
     for (int i = 1; i < 9; ++i)
@@ -97,7 +97,7 @@ TEST(EvidencePage, ShowsVerdictCandidatesAndRecords) {
                     HasSubstr("&lt;memoryless&gt;"), HasSubstr("&lt;other&gt;.csv")));
   EXPECT_THAT(page.html, AllOf(HasSubstr("<td>bump_stop</td><td class=\"number\">1</td>"),
                                HasSubstr("explains less"), HasSubstr("not enough to be added"),
-                               HasSubstr("0.400")));
+                               HasSubstr("0.400"), HasSubstr("(3.1 mm)")));
   if (!run_child({"gnuplot", "--version"}, "").started) GTEST_SKIP() << "no gnuplot";
   EXPECT_EQ(page.warning, "");
   EXPECT_THAT(page.html, AllOf(HasSubstr("rms before"), HasSubstr("frequency (Hz)"),

@@ -15,9 +15,12 @@ constexpr double kSmallGain = 0.025;  // passes with kSignificant
 constexpr double kSignificant = 2.0;
 constexpr double kLeastGain = 0.003;  // passes with kVerySignificant
 constexpr double kVerySignificant = 3.3;
-constexpr double kLaterGain = 0.035;  // of a second effect
+constexpr double kLaterGain = 0.02;         // of a second effect, with kLaterT
+constexpr double kLaterMemoryGain = 0.035;  // beside a law with memory
 constexpr double kLaterPictureGain = 0.1;
 constexpr double kLaterT = 4.0;
+constexpr double kLaterClearGain = 0.05;  // with kLaterClearT: stops are seldom reached
+constexpr double kLaterClearT = 2.5;
 constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
 constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
 constexpr double kSimplerWithin = 0.02;
@@ -60,17 +63,23 @@ bool is_picture(Effect effect) noexcept {
 }
 double later_gain(const Model& model, Effect effect) noexcept {
   bool picture = false;
+  bool memory = false;
   for (std::size_t i = 0; i < model.count; ++i) {
-    picture = picture || is_picture(model.effect[i].effect);
+    const Effect known = model.effect[i].effect;
+    picture = picture || is_picture(known);
+    memory = memory || known == Effect::kPreslidingHysteresis || known == Effect::kBacklash;
   }
-  return picture && is_picture(effect) ? kLaterPictureGain : kLaterGain;
+  if (picture && is_picture(effect)) return kLaterPictureGain;
+  return memory ? kLaterMemoryGain : kLaterGain;
 }
 
 /// What a candidate must bring. The first effect is judged by gain and significance together; small
 /// errors of the velocity's phase look like a time skew, so that needs a larger gain; later effects
 /// must not be the imperfections of the first.
 bool passes(const Step& step, bool first, double later) noexcept {
-  if (!first) return step.gain > later && step.block_t > kLaterT;
+  if (!first)
+    return step.gain > later &&
+           (step.block_t > kLaterT || (step.gain > kLaterClearGain && step.block_t > kLaterClearT));
   if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant))
     return true;
   return step.chosen.effect != Effect::kTimeSkew && step.gain > kLeastGain &&
