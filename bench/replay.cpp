@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How fast a recorded run is replayed, decoding included, and how much memory that takes.
+// How fast a recorded run is replayed, decoding included, and how much memory that takes, beside
+// canplayer, which only parses the log, and beside NumPy doing the same job.
 // `replay PROGRAM [--day]`: PROGRAM is the built dampline; --day adds 24 hours through a pipe.
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -40,9 +41,13 @@ Usage run(const std::string& command) {
           .ok = WIFEXITED(status) && WEXITSTATUS(status) == 0};
 }
 
+constexpr double kFramesPerSecond = 900.0;  // of the record
+
 void print_row(std::string_view name, double record_s, const Usage& usage) {
-  fmt::print("| {} | {:.2f} | {:.0f} | {:.1f} |{}\n", name, usage.cpu_s, record_s / usage.cpu_s,
-             usage.peak_mib, usage.ok ? "" : " failed");
+  if (!usage.ok) return fmt::print("| {} | skipped: it did not run here | | | |\n", name);
+  fmt::print("| {} | {:.2f} | {:.0f} | {:.2f} | {:.1f} |\n", name, usage.cpu_s,
+             record_s / usage.cpu_s, 1e-6 * kFramesPerSecond * record_s / usage.cpu_s,
+             usage.peak_mib);
   std::fflush(stdout);
 }
 
@@ -55,10 +60,14 @@ void replay_file(const std::string& program, const fs::path& folder, int minutes
       "exec '{}' simulate --quiet --duration {} --out '{}' --dbc '{}' --config-out '{}'", program,
       60 * minutes, log, dbc, config));
   if (!made.ok) return fmt::print("could not simulate with {}\n", program);
+  print_row(fmt::format("{} min, canplayer to stdout", minutes), 60.0 * minutes,
+            run(fmt::format("exec canplayer -t -I '{}' stdout=can0 >/dev/null", log)));
+  print_row(fmt::format("{} min, NumPy and SciPy", minutes), 60.0 * minutes,
+            run(fmt::format("exec /usr/bin/python3 bench/peers/pipeline.py '{}' >/dev/null", log)));
   const Usage used = run(
       fmt::format("exec '{}' identify --quiet --no-report --config '{}' --out '{}' '{}' >/dev/null",
                   program, config, (folder / fmt::format("run{}", minutes)).string(), log));
-  print_row(fmt::format("{} min, candump file", minutes), 60.0 * minutes, used);
+  print_row(fmt::format("{} min, dampline identify", minutes), 60.0 * minutes, used);
 }
 
 /// A day, from the simulator's pipe: no file of that size, and only identify is measured.
@@ -83,7 +92,9 @@ int main(int argc, char** argv) {
   std::string pattern = (fs::temp_directory_path() / "dampline-replay-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) return 1;
   const fs::path folder = pattern;
-  fmt::print("| record | CPU time in s | times real time | peak memory in MiB |\n|--|--|--|--|\n");
+  fmt::print(
+      "| record | CPU time in s | times real time | million frames a CPU second | peak memory in "
+      "MiB |\n|--|--|--|--|--|\n");
   replay_file(program, folder, 5);
   replay_file(program, folder, 20);
   if (argc > 2 && std::string_view{argv[2]} == "--day") replay_day(program, folder);
