@@ -14,6 +14,7 @@ namespace dampline::app {
 struct CarConfig {
   double moving_mass_kg{37200.0};                  ///< truck frame and its share of the body
   std::optional<double> suspension_stiffness_npm;  ///< start value; absent: unknown
+  std::optional<double> wheelbase_m;               ///< of the truck; absent: unknown
 };
 
 /// Frames on a bus or in a candump log. A signal is MESSAGE.SIGNAL of the DBC file.
@@ -39,6 +40,11 @@ struct InputConfig {
   std::array<double, kColumns> scale{};  ///< factor from the file's number to the canonical unit
   /// Full scale per channel: |a| at or beyond it is clipping. Absent: from the DBC, or not known.
   std::array<std::optional<double>, kChannels> range_mps2{};
+  /// White noise of each sensor, rms per sample. Absent: unknown, and more of it is no fault.
+  std::array<std::optional<double>, kChannels> noise_mps2{};
+  /// Of the car, where it hardly changes and something else measured it. Absent: unknown.
+  std::optional<double> speed_mps;
+  std::string leading{"unknown"};  ///< which wheelset meets the track first
   InputConfig() { scale.fill(1.0); }
   [[nodiscard]] std::string header(Column column) const {
     const std::string& own = columns[index(column)];
@@ -64,6 +70,13 @@ struct EstimateConfig {
   double time_constant_s{600.0};
 };
 
+/// The guards that name faults of the data.
+struct GuardSettings {
+  /// Samples wait so long for what the guards find before anything is made of them. 0: they do not
+  /// wait, faults are named all the same.
+  double wait_s{24.0};
+};
+
 /// Recording of a live run.
 struct BlackboxSettings {
   int rotate_mib{64};       ///< a new file beyond this size
@@ -85,6 +98,7 @@ struct Config {
   InputConfig input;
   ModelConfig model;
   EstimateConfig estimate;
+  GuardSettings guards;
   BlackboxSettings blackbox;
   GpioConfig gpio;
 };

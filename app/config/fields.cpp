@@ -11,6 +11,7 @@ constexpr std::array<std::string_view, 2> kInertiaWords{"none", "identify"};
 constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "none"};
 constexpr std::array<std::string_view, 2> kMethodWords{"wavelet", "all"};
 constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
+constexpr std::array<std::string_view, 3> kLeadingWords{"unknown", "wheelset1", "wheelset2"};
 constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
 constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::array<std::string_view, kChannels> kAccelKeys{"frame_accel", "wheelset1_accel",
@@ -25,6 +26,8 @@ void add_car(CarConfig& car, Fields& out) {
                  NumberField{&car.moving_mass_kg, {1.0, 1e6}}});
   out.push_back({"car", "suspension_stiffness_npm", "start value, identified too; absent: unknown",
                  OptionalNumberField{&car.suspension_stiffness_npm, {1.0, 1e12}, ""}});
+  out.push_back({"car", "wheelbase_m", "of the truck, for the guards; absent: unknown",
+                 OptionalNumberField{&car.wheelbase_m, {0.3, 10.0}, ""}});
 }
 
 void add_can(CanConfig& can, Fields& out) {
@@ -54,6 +57,10 @@ void add_csv(InputConfig& input, Fields& out) {
 void add_input(InputConfig& input, Fields& out) {
   out.push_back({"input", "sample_rate_hz", "nominal; the records' own time decides",
                  NumberField{&input.sample_rate_hz, {1.0, 1e5}}});
+  out.push_back({"input", "speed_mps", "of the car, if constant and known; absent: unknown",
+                 OptionalNumberField{&input.speed_mps, {0.1, 150.0}, ""}});
+  out.push_back({"input", "leading", "which wheelset meets the track first",
+                 TextField{&input.leading, kLeadingWords}});
   out.push_back({"input.anti_alias", "corner_hz", "of the sensors' low-pass; 0: none, or unknown",
                  NumberField{&input.anti_alias.corner_hz, {0.0, 1e5}}});
   out.push_back({"input.anti_alias", "order", "of that Butterworth filter",
@@ -62,6 +69,10 @@ void add_input(InputConfig& input, Fields& out) {
     out.push_back({"input.range_mps2", kChannelNames[c],
                    "|a| at or beyond it is clipping; absent: from the DBC file",
                    OptionalNumberField{&input.range_mps2[c], {1e-3, 1e6}, ""}});
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.push_back({"input.noise_mps2", kChannelNames[c],
+                   "white noise of the sensor, rms; absent: unknown",
+                   OptionalNumberField{&input.noise_mps2[c], {1e-6, 1e3}, ""}});
   add_can(input.can, out);
   add_csv(input, out);
 }
@@ -97,6 +108,11 @@ void add_estimate(EstimateConfig& estimate, Fields& out) {
                  NumberField{&estimate.time_constant_s, {10.0, 1e7}}});
 }
 
+void add_guards(GuardSettings& guards, Fields& out) {
+  out.push_back({"guards", "wait_s", "samples wait so long for the guards; 0: nothing is left out",
+                 NumberField{&guards.wait_s, {0.0, 25.0}}});
+}
+
 void add_blackbox(BlackboxSettings& blackbox, Fields& out) {
   out.push_back({"blackbox", "rotate_mib", "a live recording begins a new file beyond this size",
                  IntegerField{&blackbox.rotate_mib, {1.0, 65536.0}}});
@@ -125,6 +141,7 @@ std::vector<Field> fields(Config& config) {
   add_input(config.input, out);
   add_model(config.model, out);
   add_estimate(config.estimate, out);
+  add_guards(config.guards, out);
   add_blackbox(config.blackbox, out);
   add_gpio(config.gpio, out);
   return out;

@@ -9,6 +9,10 @@ namespace {
 
 constexpr double kMoreGain = 0.02;
 
+bool passes(const FaultFinding& fault) {
+  return fault.name == "spikes" || fault.name == "dc_jump" || fault.name == "noise_burst";
+}
+
 bool is_harmless(std::string_view name, std::string_view channel) {
   if (name == "lost_samples" || name == "repeated_samples") return channel == "all";
   return name == "stuck_channel" || name == "wrong_sample_rate";
@@ -17,14 +21,21 @@ bool is_harmless(std::string_view name, std::string_view channel) {
 }  // namespace
 
 bool forbids_naming(const DataFaults& faults) noexcept {
-  return !std::all_of(faults.list.begin(), faults.list.end(),
-                      [](const FaultFinding& f) { return is_harmless(f.name, f.channel); });
+  const bool repaired = faults.values_replaced + faults.samples_spoilt > 0;
+  return !std::all_of(faults.list.begin(), faults.list.end(), [repaired](const FaultFinding& f) {
+    return is_harmless(f.name, f.channel) || (repaired && passes(f));
+  });
 }
 
 bool faults_forbid_naming(std::span<const Fault> faults) noexcept {
   return !std::all_of(faults.begin(), faults.end(), [](const Fault& f) {
     return is_harmless(name_of(f.kind), name_of(f.channel));
   });
+}
+
+void disallow_mimics(const DataFaults& faults, effect::ExplainerConfig& config) noexcept {
+  if (std::any_of(faults.list.begin(), faults.list.end(), passes))
+    config.allowed[static_cast<std::size_t>(effect::Effect::kImpulsiveInput)] = false;
 }
 
 bool drift_explains_more(const DataFaults& faults,

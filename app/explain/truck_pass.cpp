@@ -41,6 +41,7 @@ TruckPass pass_of(const Config& config, const SourceOptions& source,
       });
   const auto no_state = [](const TruckRun&) { return std::string{}; };
   pump(*pass.feed, source, options.show_progress, no_state, *pass.run);
+  pass.run->close();
   pass.run->watch({});
   pass.diagnosis->finish();
   return pass;

@@ -30,7 +30,9 @@ effect::ExplainerConfig explainer_config(const Config& config) {
 
 bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
                 effect::Explainer& explainer, Explained& out) {
-  out.explanation = explainer.explain(diagnosis, explainer_config(config));
+  effect::ExplainerConfig wanted = explainer_config(config);
+  disallow_mimics(out.identified.faults, wanted);
+  out.explanation = explainer.explain(diagnosis, wanted);
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
   out.withheld = forbids_naming(out.identified.faults);
   out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);

@@ -14,25 +14,34 @@ namespace {
 
 constexpr std::size_t kMostSpans = 200;
 
-GuardConfig guard_config(const IdentifierConfig& config) {
+Leading leading_of(const std::string& word) {
+  if (word == "wheelset1") return Leading::kWheelset1;
+  return word == "wheelset2" ? Leading::kWheelset2 : Leading::kUnknown;
+}
+
+GuardConfig guard_config(const Config& config, const IdentifierConfig& core) {
   GuardConfig out;
-  out.sample_rate_hz = config.sample_rate_hz;
-  out.step_mps2 = config.screen.step_mps2;
-  out.anti_alias = config.anti_alias;
+  out.sample_rate_hz = core.sample_rate_hz;
+  out.step_mps2 = core.screen.step_mps2;
+  out.anti_alias = core.anti_alias;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.noise_mps2[c] = config.input.noise_mps2[c].value_or(0.0);
+  out.wheelbase_m = config.car.wheelbase_m.value_or(0.0);
+  out.speed_mps = config.input.speed_mps.value_or(0.0);
+  out.leading = leading_of(config.input.leading);
   const auto checked = Guard::check(out);
   if (!checked.ok()) throw UsageError{"[input] anti_alias: not a filter that the guards know"};
   return checked.value();
 }
 
-std::vector<Span> spoilt_spans(const Guard& guard, FaultKind kind, double nominal_hz,
+std::vector<Span> spoilt_spans(const Guard& guard, const Fault& fault, double nominal_hz,
                                const TruckRecord& record) {
-  const std::uint32_t bit = 1U << static_cast<unsigned>(kind);
   const auto second = std::max<std::int64_t>(std::llround(nominal_hz), 1);
   std::vector<Span> spans;
   const std::int64_t known = record.newest_tick - FaultBook::kSeconds * second;
   for (std::int64_t tick = std::max(record.first_tick, known); tick <= record.newest_tick;
        tick += second) {
-    if ((guard.spoilt(tick, tick) & bit) == 0) continue;
+    if (!guard.spoilt(fault.kind, fault.channel, tick)) continue;
     const double start_s = record.time_s(tick);
     const double end_s = record.time_s(tick + second);
     if (!spans.empty() && start_s - spans.back().end_s < 0.5) {
@@ -53,23 +62,49 @@ std::string warning_of(const DataFaults& faults) {
 
 }  // namespace
 
-FaultWatch::FaultWatch(const IdentifierConfig& config)
-    : nominal_hz_{config.sample_rate_hz}, guard_{std::make_unique<Guard>(guard_config(config))} {}
+void describe_faults(const FaultView& view, const TruckRecord& record, double nominal_hz,
+                     DataFaults& out) {
+  const auto own_s = [&](double time_s) {
+    return record.time_s(std::llround(time_s * nominal_hz));
+  };
+  for (std::size_t i = 0; i < view.count; ++i) {
+    const Fault& fault = view.faults[i];
+    out.list.push_back({name_of(fault.kind),
+                        name_of(fault.channel),
+                        own_s(fault.time_s),
+                        own_s(fault.last_s),
+                        fault.size,
+                        fault.unit,
+                        fault.count,
+                        {}});
+  }
+  for (const std::uint64_t impacts : view.inputs.impacts) out.impacts += impacts;
+  out.speed_changes = view.inputs.speed_changes;
+  out.values_replaced = view.held.replaced;
+  out.samples_spoilt = view.held.spoilt;
+}
+
+FaultWatch::FaultWatch(const Config& config, const IdentifierConfig& core)
+    : nominal_hz_{core.sample_rate_hz},
+      wait_s_{config.guards.wait_s},
+      guard_{std::make_unique<Guard>(guard_config(config, core))},
+      hold_{std::make_unique<SampleHold>(
+          static_cast<std::size_t>(std::llround(config.guards.wait_s * core.sample_rate_hz)))} {}
+
+FaultView FaultWatch::view() const noexcept {
+  FaultView out;
+  for (const Fault& fault : guard_->faults()) out.faults[out.count++] = fault;
+  out.inputs = guard_->inputs();
+  out.held = hold_->counts();
+  return out;
+}
 
 void FaultWatch::finish(const TruckRecord& record, const Statistics& statistics,
                         RunResult& result) {
-  guard_->finish();
   DataFaults& out = result.faults;
-  const auto own_s = [&](double time_s) {
-    return record.time_s(std::llround(time_s * nominal_hz_));
-  };
-  for (const Fault& fault : guard_->faults()) {
-    out.list.push_back({name_of(fault.kind), name_of(fault.channel), own_s(fault.time_s),
-                        own_s(fault.last_s), fault.size, fault.unit, fault.count,
-                        spoilt_spans(*guard_, fault.kind, nominal_hz_, record)});
-  }
-  for (const std::uint64_t impacts : guard_->inputs().impacts) out.impacts += impacts;
-  out.speed_changes = guard_->inputs().speed_changes;
+  describe_faults(view(), record, nominal_hz_, out);
+  for (std::size_t i = 0; i < out.list.size(); ++i)
+    out.list[i].spans = spoilt_spans(*guard_, guard_->faults()[i], nominal_hz_, record);
   const ParameterDrift drift = find_parameter_drift(statistics, Identifier::kBlockS);
   if (drift.found) {
     out.drift = DriftFinding{name_of(drift.parameter),

@@ -4,19 +4,47 @@
 #include <memory>
 #include <span>
 
+#include "app/config/config.hpp"
 #include "app/identify/truck_result.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/guard/guard.hpp"
+#include "dampline/guard/sample_hold.hpp"
 #include "dampline/identifier.hpp"
 
 namespace dampline::app {
 
-/// The guards beside an identification. take() does not allocate.
+/// The faults at one moment, in the core's own time. Plain: it is handed between threads.
+struct FaultView {
+  std::array<Fault, FaultBook::kMost> faults{};
+  std::size_t count{0};
+  GuardInputs inputs;
+  SampleHold::Counts held;
+};
+
+/// Names, sizes and times in the record's own time; no spans.
+void describe_faults(const FaultView& view, const TruckRecord& record, double nominal_hz,
+                     DataFaults& out);
+
+/// The guards before an identification. take() does not allocate.
 class FaultWatch {
  public:
-  /// Precondition: Identifier::check(config).ok().
-  explicit FaultWatch(const IdentifierConfig& config);
-  void take(const Sample& sample) noexcept { guard_->update(sample); }
+  /// Precondition: Identifier::check(core).ok(). Throws UsageError naming the key that the guards
+  /// cannot use.
+  FaultWatch(const Config& config, const IdentifierConfig& core);
+  /// True when it wrote the sample whose turn it is: an earlier one, replaced or marked as spoilt
+  /// where the guards want that.
+  bool take(const Sample& sample, Sample& out) noexcept {
+    guard_->update(sample);
+    return hold_->push(sample, *guard_, out);
+  }
+  /// No more samples: the guards judge what they have.
+  void close() noexcept { guard_->finish(); }
+  /// After close(): what still waits, one per call.
+  [[nodiscard]] bool drain(Sample& out) noexcept { return hold_->drain(*guard_, out); }
+  /// How long samples wait.
+  [[nodiscard]] double wait_s() const noexcept { return wait_s_; }
+  /// What is known now.
+  [[nodiscard]] FaultView view() const noexcept;
   [[nodiscard]] std::span<const Fault> found() const noexcept { return guard_->faults(); }
   /// White noise of each channel, rms; 0: not known yet.
   [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
@@ -30,7 +58,9 @@ class FaultWatch {
 
  private:
   double nominal_hz_;
+  double wait_s_;
   std::unique_ptr<Guard> guard_;
+  std::unique_ptr<SampleHold> hold_;
 };
 
 }  // namespace dampline::app

@@ -27,6 +27,8 @@ constexpr std::string_view reason(BlockStatus status) {
       return "channel stuck";
     case BlockStatus::kExcludedNotFinite:
       return "not a number";
+    case BlockStatus::kExcludedSpoilt:
+      return "fault of the data";
     case BlockStatus::kStill:
       return "standstill";
     case BlockStatus::kUsed:
@@ -80,6 +82,15 @@ IdentifierConfig identifier_config(const Config& config) {
   return core;
 }
 
+DataFaults faults_of(const TruckView& view, double nominal_hz) {
+  TruckRecord record;
+  record.sample_rate_hz = nominal_hz;
+  record.first_tick = view.first_tick;
+  DataFaults out;
+  describe_faults(view.faults, record, nominal_hz, out);
+  return out;
+}
+
 TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
     : core_{with_screen(identifier_config(config), screen)},
       config_{config},
@@ -89,7 +100,8 @@ TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
       block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
       history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
       excerpt_{core_.sample_rate_hz},
-      faults_{core_} {}
+      faults_{config, core_},
+      alarms_{core_} {}
 
 void TruckRun::take(const Sample& sample) {
   if (!started_) {
@@ -100,7 +112,11 @@ void TruckRun::take(const Sample& sample) {
   }
   newest_tick_ = std::max(newest_tick_, sample.tick);
   clipping_.take(sample);
-  faults_.take(sample);
+  Sample due;
+  if (faults_.take(sample, due)) use(due);
+}
+
+void TruckRun::use(const Sample& sample) {
   const UpdateResult result = identifier_->update(sample);
   if (watcher_) watcher_(sample, result);
   if (result.has_motion) {
@@ -110,6 +126,7 @@ void TruckRun::take(const Sample& sample) {
   methods_->update(result);
   if (!result.block_closed) return;
   note_block(result.block);
+  alarms_.take(result.block, sample.tick, *identifier_);
   if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->snapshot());
 }
 
@@ -131,22 +148,36 @@ const ConvergenceHistory::Row* TruckRun::newest() const noexcept {
 }
 
 TruckView TruckRun::view() noexcept {
-  return {identifier_->snapshot(), first_tick_, newest_tick_, first_time_ns_};
+  return {identifier_->snapshot(), first_tick_,    newest_tick_,
+          first_time_ns_,          faults_.view(), alarms_.view()};
 }
 
 RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const Config& config,
                         const std::string& source) {
-  return describe_truck(record_of(view, rate, config.input.sample_rate_hz, source), config.model);
+  const TruckRecord record = record_of(view, rate, config.input.sample_rate_hz, source);
+  RunResult result = describe_truck(record, config.model);
+  describe_faults(view.faults, record, config.input.sample_rate_hz, result.faults);
+  describe_alarms(view.alarms, record, result);
+  return result;
+}
+
+void TruckRun::close() {
+  if (closed_) return;
+  closed_ = true;
+  faults_.close();
+  for (Sample due; faults_.drain(due);) use(due);
+  identifier_->finish();
 }
 
 RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) {
-  identifier_->finish();
+  close();
   const TruckView last = view();
   const TruckRecord record = record_of(last, rate, core_.sample_rate_hz, source);
   if (!last.snapshot.valid) fail_unusable(last.snapshot, source);
   history_.add(newest_tick_, last.snapshot);
   RunResult result = describe_truck(record, config_.model);
-  result.latency_s = identifier_->motion_latency_s();
+  result.counts.emplace_back("blocks_spoilt", blocks(BlockStatus::kExcludedSpoilt));
+  result.latency_s = identifier_->motion_latency_s() + faults_.wait_s();
   fill_history(history_.rows(), record, result);
   fill_motion(excerpt_.best(), record, result);
   fill_phase(*phase_, record, result);
@@ -158,6 +189,7 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
   const auto statistics = std::make_unique<Statistics>();
   identifier_->export_statistics(*statistics);
   faults_.finish(record, *statistics, result);
+  describe_alarms(last.alarms, record, result);
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
   return result;

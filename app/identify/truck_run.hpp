@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/config/config.hpp"
+#include "app/identify/alarm_watch.hpp"
 #include "app/identify/clipping_watch.hpp"
 #include "app/identify/convergence_history.hpp"
 #include "app/identify/excluded_list.hpp"
@@ -32,6 +33,8 @@ struct TruckView {
   std::int64_t first_tick{0};
   std::int64_t newest_tick{0};
   std::int64_t first_time_ns{0};
+  FaultView faults;
+  AlarmView alarms;
 };
 
 /// A view as a result, in the record's own time. Throws RunError naming `source` when the measured
@@ -39,8 +42,12 @@ struct TruckView {
 [[nodiscard]] RunResult describe_view(const TruckView& view, const MeasuredRate& rate,
                                       const Config& config, const std::string& source);
 
+/// The faults of a view, in seconds from its beginning by the nominal rate.
+[[nodiscard]] DataFaults faults_of(const TruckView& view, double nominal_hz);
+
 /// One truck record through the core: takes samples, keeps what a report shows beside the result.
-/// Memory does not grow with the record; take() and view() do not allocate.
+/// Memory does not grow with the record; take() and view() do not allocate. The core sees a sample
+/// when the guards have judged it, [guards] wait_s later.
 class TruckRun {
  public:
   /// `screen`: what is known of the channels; its rate is the configuration's.
@@ -60,8 +67,11 @@ class TruckRun {
   [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
     return faults_.noise_mps2();
   }
-  /// No more samples. Precondition: not empty(). Throws RunError naming `source` when nothing could
-  /// be identified, with the reasons, or when the measured rate is not the nominal one.
+  /// No more samples: the core gets what still waits for the guards. Done once.
+  void close();
+  /// close(), and what the record says. Precondition: not empty(). Throws RunError naming `source`
+  /// when nothing could be identified, with the reasons, or when the measured rate is not the
+  /// nominal one.
   [[nodiscard]] RunResult finish(const MeasuredRate& rate, const std::string& source);
 
   /// The newest sample, in seconds from the first; by the nominal rate.
@@ -72,8 +82,9 @@ class TruckRun {
   [[nodiscard]] std::string encoded_state();
 
  private:
-  static constexpr std::size_t kStatuses = 7;
+  static constexpr std::size_t kStatuses = 8;
 
+  void use(const Sample& sample);
   void note_block(const BlockReport& block);
   [[nodiscard]] std::uint64_t blocks(BlockStatus status) const noexcept {
     return blocks_[static_cast<std::size_t>(status)];
@@ -87,6 +98,7 @@ class TruckRun {
   std::unique_ptr<PhaseView> phase_;
   double block_ticks_;
   bool started_{false};
+  bool closed_{false};
   std::int64_t first_tick_{0};
   std::int64_t first_time_ns_{0};
   std::int64_t newest_tick_{0};
@@ -96,6 +108,7 @@ class TruckRun {
   ExcludedList excluded_;
   ClippingWatch clipping_;
   FaultWatch faults_;
+  AlarmWatch alarms_;
   Watcher watcher_;
 };
 

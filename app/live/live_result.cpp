@@ -58,6 +58,7 @@ RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
   result.kind = "truck";
   result.headline = "Not enough motion yet to identify anything.";
   result.asymmetry = "not observable from accelerations";
+  if (status.any_sample) result.faults = faults_of(status.view, config.input.sample_rate_hz);
   if (status.any_sample && status.view.snapshot.valid) {
     try {
       result = describe_view(status.view, status.rate, config, around.source);

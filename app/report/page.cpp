@@ -30,7 +30,7 @@ constexpr std::string_view kRigCurveText =
 constexpr std::string_view kFaultText =
     "Faults of sensors and of the transport. A line leads from where a fault was first seen to "
     "where "
-    "it was last seen; coloured seconds hold samples that it spoils.";
+    "it was last seen; orange seconds hold samples that it spoils, grey blocks were left out.";
 constexpr std::string_view kMethodText =
     "The force against the direction of motion, as each method finds it. What stands on an "
     "assumption that this record contradicts is drawn grey and dashed.";

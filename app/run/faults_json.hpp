@@ -6,7 +6,8 @@
 
 namespace dampline::app {
 
-/// The members "faults", "inputs" and, where there is one, "time_drift" of parameters.json.
+/// The members "faults", "inputs", "repair", "alarms" and, where there is one, "time_drift" of
+/// parameters.json.
 void write_faults(const DataFaults& faults, nlohmann::ordered_json& json);
 /// Throws nlohmann::json::exception where a member has not the shape that write_faults() gives it;
 /// members that are missing leave the defaults.

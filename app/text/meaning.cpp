@@ -27,7 +27,7 @@ constexpr std::array<Entry, 13> kParameters{{
     {"noise", "sensor noise of one channel, rms"},
 }};
 
-constexpr std::array<Entry, 36> kCounts{{
+constexpr std::array<Entry, 37> kCounts{{
     {"samples", "samples read"},
     {"gaps", "gaps in the sequence"},
     {"lost", "samples lost in the gaps"},
@@ -37,6 +37,7 @@ constexpr std::array<Entry, 36> kCounts{{
     {"repeated", "samples that came twice or too late; ignored"},
     {"blocks", "blocks of about 2 s"},
     {"blocks_excluded", "blocks left out because of a fault"},
+    {"blocks_spoilt", "of these because of a fault that the guards found"},
     {"blocks_still", "blocks at standstill"},
     {"blocks_used", "stretches of equal length that hold equations"},
     {"rows", "equations used"},

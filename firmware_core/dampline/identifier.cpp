@@ -116,6 +116,8 @@ void Identifier::count_fault(Verdict verdict, std::int64_t block) noexcept {
   switch (verdict) {
     case Verdict::kGood:
       return;
+    case Verdict::kSpoilt:
+      return ledger_.mark(block, Fault::kSpoilt);
     case Verdict::kStuck:
       ++counts_.stuck;
       return ledger_.mark(block, Fault::kStuck);

@@ -67,6 +67,11 @@ class Identifier {
 
   /// The sufficient statistics so far. `out` is some 270 KiB: place it yourself.
   void export_statistics(Statistics& out) noexcept;
+  /// The sums over all blocks alone, some 9 KiB.
+  void export_total(ScaleFactors& out) noexcept {
+    store_.finish();
+    store_.total_to(out);
+  }
   /// Starts new statistics; filters and open blocks go on. Two exports around this call merge to
   /// what one export without it would have been.
   void clear_statistics() noexcept;

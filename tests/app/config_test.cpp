@@ -29,9 +29,14 @@ TEST(Config, TakesEveryKeyOfTheDesign) {
   const Config config = parse_config(R"(
 [car]
 moving_mass_kg = 9700
+wheelbase_m = 1.8
 suspension_stiffness_npm = 2.0e6
 [input]
 sample_rate_hz = 250
+speed_mps = 22.2
+leading = "wheelset2"
+[input.noise_mps2]
+wheelset1 = 0.05
 [input.can]
 dbc = "sensors.dbc"
 frame_accel = "TRUCK_FRAME.ACCEL_Z"
@@ -52,6 +57,8 @@ curve_nodes_mps = [0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.008]
 [estimate]
 memory = "window"
 window_s = 120
+[guards]
+wait_s = 12
 )",
                                      "car.toml");
   EXPECT_EQ(config.car.moving_mass_kg, 9700.0);
@@ -69,6 +76,12 @@ window_s = 120
   EXPECT_EQ(config.model.curve_nodes_mps.size(), 8U);
   EXPECT_EQ(config.estimate.memory, "window");
   EXPECT_EQ(config.estimate.window_s, 120.0);
+  EXPECT_EQ(config.car.wheelbase_m, 1.8);
+  EXPECT_EQ(config.input.speed_mps, 22.2);
+  EXPECT_EQ(config.input.leading, "wheelset2");
+  EXPECT_EQ(config.input.noise_mps2[1], 0.05);
+  EXPECT_FALSE(config.input.noise_mps2[0].has_value());
+  EXPECT_EQ(config.guards.wait_s, 12.0);
 }
 
 TEST(Config, NamesAnUnknownKeyItsLineAndTheNearestKnownOne) {

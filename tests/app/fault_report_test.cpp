@@ -17,6 +17,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 RunResult identify(const sim::RecordFaultConfig& faults) {
   const sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 11);
@@ -48,6 +49,8 @@ TEST(FaultReport, NamesAFaultInParametersAndInTheReport) {
   EXPECT_THAT(result.warnings, Contains(HasSubstr("dc_jump (wheelset1)")));
   EXPECT_THAT(fault_section(back), HasSubstr("dc jump"));
   EXPECT_THAT(plot_faults(back).script, HasSubstr("'dc jump, wheelset1' 0"));
+  EXPECT_THAT(plot_faults(result).script,
+              HasSubstr("'dc jump, wheelset1' 1,'left out: fault of the data' 0"));
 }
 
 TEST(FaultReport, SaysThatASoundRecordHasNone) {
@@ -64,6 +67,60 @@ TEST(FaultReport, KeepsAParameterThatChangedThroughTheFile) {
   ASSERT_TRUE(back.faults.drift.has_value());
   EXPECT_EQ(describe_drift(*back.faults.drift),
             "coulomb changed by +12.0 ± 1.5 % at 150 ± 8 s of moving time");
+}
+
+TEST(FaultReport, KeepsAlarmsAndWhatWasLeftOutThroughTheFile) {
+  RunResult result;
+  result.kind = "truck";
+  result.faults.alarms.push_back({"moving_mass", -30.2, 4210.0, 4450.0});
+  result.faults.values_replaced = 7;
+  result.faults.samples_spoilt = 900;
+  const RunResult back = from_json(to_json(result), "memory");
+  ASSERT_EQ(back.faults.alarms.size(), 1U);
+  EXPECT_EQ(describe_alarm(back.faults.alarms.front()),
+            "moving_mass changed by -30.2 % since 4210 s, told at 4450 s");
+  EXPECT_EQ(back.faults.values_replaced, 7U);
+  EXPECT_EQ(back.faults.samples_spoilt, 900U);
+  EXPECT_THAT(fault_section(back), HasSubstr("moving_mass changed"));
+  EXPECT_THAT(fault_section(back), HasSubstr("900 samples left out"));
+  EXPECT_THAT(fault_section(back), Not(HasSubstr("Live alarm")));
+  result.live = LiveFigures{};
+  EXPECT_THAT(fault_section(result), HasSubstr("Live alarm: 1; on simulated months 0.011 false"));
+  EXPECT_THAT(to_json(result), HasSubstr("\"false_alarms_per_1000_h\": 0.011"));
+}
+
+TEST(FaultReport, TellsWhatALeapOfTheZeroCosts) {
+  sim::RecordFaultConfig faults;
+  faults.start_s = 30.0;
+  faults.dc_jump_mps2[1] = 1.5;
+  const RunResult result = identify(faults);
+  EXPECT_GT(result.faults.samples_spoilt, 300U);
+  EXPECT_LT(result.faults.samples_spoilt, 1200U);
+  ASSERT_FALSE(result.excluded.empty());
+  EXPECT_EQ(result.excluded.front().reason, "fault of the data");
+  EXPECT_NEAR(result.excluded.front().start_s, 29.0, 2.5);
+  const auto spoilt = std::make_pair(std::string{"blocks_spoilt"}, std::uint64_t{2});
+  EXPECT_THAT(from_json(to_json(result), "memory").counts, Contains(spoilt));
+}
+
+TEST(FaultReport, TakesWhatIsDeclaredFromTheConfiguration) {
+  const sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 11);
+  const auto names = [&](double speed_mps, const char* leading) {
+    Config config;
+    config.car.wheelbase_m = simulation.truck.wheelbase_m;
+    config.input.speed_mps = speed_mps;
+    config.input.leading = leading;
+    TruckRun run{config};
+    sim::Simulation record{simulation};
+    for (int i = 0; i < 100 * sim::kSampleRateHz; ++i) run.take(sim::to_sample(record.next()));
+    std::vector<std::string> out;
+    for (const FaultFinding& f : run.finish({}, "simulated").faults.list) out.push_back(f.name);
+    return out;
+  };
+  const double true_mps = simulation.speed.speed_mps;
+  EXPECT_THAT(names(true_mps, "wheelset1"), IsEmpty());
+  EXPECT_THAT(names(1.02 * true_mps, "wheelset1"), Contains("wrong_sample_rate"));
+  EXPECT_THAT(names(true_mps, "wheelset2"), Contains("swapped_channels"));
 }
 
 }  // namespace

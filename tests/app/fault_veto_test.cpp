@@ -37,6 +37,32 @@ TEST(FaultVeto, IsForFaultsThatLookLikeEffects) {
   EXPECT_FALSE(forbids_naming({}));
 }
 
+TEST(FaultVeto, LetsTheDiagnosisGoOnWhereAFaultThatPassesWasLeftOut) {
+  for (const char* name : {"spikes", "dc_jump", "noise_burst"}) {
+    DataFaults faults = with(name, "frame");
+    EXPECT_TRUE(forbids_naming(faults)) << name;
+    faults.samples_spoilt = 600;
+    EXPECT_FALSE(forbids_naming(faults)) << name;
+  }
+  DataFaults lasting = with("clock_drift", "frame");
+  lasting.values_replaced = 3;
+  EXPECT_TRUE(forbids_naming(lasting));
+}
+
+TEST(FaultVeto, TakesNoFaultThatPassedForAnImpulsiveInput) {
+  constexpr auto kImpulsive = static_cast<std::size_t>(effect::Effect::kImpulsiveInput);
+  for (const char* name : {"spikes", "dc_jump", "noise_burst"}) {
+    effect::ExplainerConfig config;
+    disallow_mimics(with(name, "frame"), config);
+    EXPECT_FALSE(config.allowed[kImpulsive]) << name;
+    config.allowed[kImpulsive] = true;
+    EXPECT_EQ(config.allowed, effect::ExplainerConfig::all()) << name;
+  }
+  effect::ExplainerConfig config;
+  disallow_mimics(with("lost_samples", "all"), config);
+  EXPECT_EQ(config.allowed, effect::ExplainerConfig::all());
+}
+
 TEST(FaultVeto, TakesBackWhatWasAdded) {
   effect::Explanation explanation = explained_by_one_effect(0.5);
   withhold_effects(explanation);

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 #include <vector>
 
+#include "dampline/guard/guard.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/candump/candump_source.hpp"
 #include "drivers/dbc/channel.hpp"
@@ -23,6 +25,24 @@ class MeasuredLog : public ::testing::Test {
     auto source = CandumpSource::open({.path = (folder / "can_sample.log").string()});
     frames_.resize(100'000);
     frames_.resize(source.value()->read(frames_).value());
+  }
+  AssemblerConfig accelerations() const {
+    AssemblerConfig config;
+    config.sample_rate_hz = 50.0;
+    config.channels[0] = channel_from(dbc_, "ID_D0.ACCEL_LAT", "").value();
+    config.channels[1] = config.channels[2] = channel_from(dbc_, "ID_D0.ACCEL_LONG", "").value();
+    return SampleAssembler::check(config).value();
+  }
+  std::vector<Sample> assemble(SampleAssembler& assembler) const {
+    std::vector<Sample> samples;
+    Sample sample;
+    for (const CanFrame& frame : frames_) {
+      assembler.push(frame);
+      while (assembler.pop(sample)) samples.push_back(sample);
+    }
+    assembler.flush();
+    while (assembler.pop(sample)) samples.push_back(sample);
+    return samples;
   }
   Dbc dbc_;
   std::vector<CanFrame> frames_;
@@ -62,27 +82,32 @@ TEST_F(MeasuredLog, HasTheStatedFramesIdentifiersAndRange) {
 }
 
 TEST_F(MeasuredLog, AssemblesIntoSamplesWithoutAGapAtItsOwnRate) {
-  AssemblerConfig config;
-  config.sample_rate_hz = 50.0;
-  config.channels[0] = channel_from(dbc_, "ID_D0.ACCEL_LAT", "").value();
-  config.channels[1] = config.channels[2] = channel_from(dbc_, "ID_D0.ACCEL_LONG", "").value();
-  EXPECT_FALSE(config.channels[0].has_counter);
-  ASSERT_TRUE(SampleAssembler::check(config).ok());
-  SampleAssembler assembler{config};
-  std::vector<Sample> samples;
-  Sample sample;
-  for (const CanFrame& frame : frames_) {
-    assembler.push(frame);
-    while (assembler.pop(sample)) samples.push_back(sample);
-  }
-  assembler.flush();
-  while (assembler.pop(sample)) samples.push_back(sample);
+  SampleAssembler assembler{accelerations()};
+  EXPECT_FALSE(accelerations().channels[0].has_counter);
+  const std::vector<Sample> samples = assemble(assembler);
   ASSERT_EQ(samples.size(), 4514U);
   EXPECT_EQ(samples.back().tick - samples.front().tick, 4513);
   EXPECT_EQ(assembler.counts().foreign, 82558U - 4514U);
   EXPECT_EQ(assembler.counts().channels[0].gaps, 0U);
   EXPECT_EQ(assembler.counts().channels[0].saturated, 0U);
   EXPECT_NEAR(assembler.measured_rate().rate_hz, 50.0, 0.005);
+}
+
+/// Eight bits of a road car, its frames at 50 Hz: coarse, but sound.
+TEST_F(MeasuredLog, HasNoFaultThatTheGuardsSee) {
+  GuardConfig config;
+  config.sample_rate_hz = 50.0;
+  for (const bool declared : {false, true}) {
+    if (declared) config.step_mps2 = {0.2, 0.15, 0.15};
+    const auto guard = std::make_unique<Guard>(Guard::check(config).value());
+    SampleAssembler fresh{accelerations()};
+    for (const Sample& sample : assemble(fresh)) guard->update(sample);
+    guard->finish();
+    for (const Fault& fault : guard->faults())
+      ADD_FAILURE() << name_of(fault.kind) << ' ' << name_of(fault.channel) << " at "
+                    << fault.time_s << " s, " << fault.size << ' ' << fault.unit << " x "
+                    << fault.count;
+  }
 }
 
 }  // namespace

@@ -63,7 +63,8 @@ TEST(AcquisitionHeap, IsNotTouchedByAHundredThousandSamples) {
     while (acquisition->items().pop(item)) continue;
     return more;
   };
-  while (acquisition->samples() < 10'000) ASSERT_TRUE(step());
+  // Samples wait 24 s for the guards before the core touches its memory.
+  while (acquisition->samples() < 20'000) ASSERT_TRUE(step());
   const PageFaults before = page_faults_of_thread();
   std::uint64_t calls = 0;
   {

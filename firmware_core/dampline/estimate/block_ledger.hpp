@@ -15,6 +15,7 @@ enum class BlockStatus : std::uint8_t {
   kExcludedSaturated,  ///< a channel stood at full scale
   kExcludedStuck,      ///< a channel held one value
   kExcludedNotFinite,  ///< NaN or infinite
+  kExcludedSpoilt,     ///< samples that the guards spoilt
 };
 
 struct BlockReport {
@@ -41,7 +42,7 @@ class BlockReports {
 /// Keeps, for the blocks that are still open, why they cannot be used.
 class BlockLedger {
  public:
-  enum class Fault : std::uint8_t { kNone, kGap, kSaturated, kStuck, kNotFinite };
+  enum class Fault : std::uint8_t { kNone, kGap, kSaturated, kStuck, kNotFinite, kSpoilt };
 
   /// The first fault of a block is the one that is reported.
   void mark(std::int64_t block, Fault fault) noexcept {
@@ -63,6 +64,8 @@ class BlockLedger {
         return BlockStatus::kExcludedStuck;
       case Fault::kNotFinite:
         return BlockStatus::kExcludedNotFinite;
+      case Fault::kSpoilt:
+        return BlockStatus::kExcludedSpoilt;
       case Fault::kNone:
         break;
     }

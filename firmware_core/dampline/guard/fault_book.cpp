@@ -41,15 +41,29 @@ void FaultBook::report(FaultKind kind, FaultChannel channel, double time_s, doub
   }
 }
 
-void FaultBook::spoil(FaultKind kind, std::int64_t first_tick, std::int64_t last_tick) noexcept {
+template <typename Change>
+void FaultBook::change(std::int64_t first_tick, std::int64_t last_tick, Change what) noexcept {
   const std::int64_t last = second_of(last_tick);
   const std::int64_t first =
       std::max(second_of(std::max<std::int64_t>(first_tick, 0)), last - kSeconds + 1);
   for (std::int64_t second = first; second <= last; ++second) {
     Second& entry = spoilt_[slot(second)];
-    if (entry.number != second) entry = {.number = second, .kinds = 0};
-    entry.kinds |= 1U << static_cast<unsigned>(kind);
+    if (entry.number != second) entry = {.number = second};
+    what(entry);
   }
+}
+
+void FaultBook::spoil(FaultKind kind, FaultChannel channel, std::int64_t first_tick,
+                      std::int64_t last_tick) noexcept {
+  change(first_tick, last_tick, [=](Second& entry) {
+    std::uint16_t& kinds = entry.kinds[static_cast<std::size_t>(channel)];
+    kinds = static_cast<std::uint16_t>(kinds | 1U << static_cast<unsigned>(kind));
+  });
+}
+
+void FaultBook::spoil_by_gap(std::int64_t first_tick, std::int64_t last_tick) noexcept {
+  spoil(FaultKind::kLostSamples, FaultChannel::kAll, first_tick, last_tick);
+  change(first_tick, last_tick, [](Second& entry) { entry.gap = true; });
 }
 
 std::uint32_t FaultBook::spoilt(std::int64_t first_tick, std::int64_t last_tick) const noexcept {
@@ -58,9 +72,18 @@ std::uint32_t FaultBook::spoilt(std::int64_t first_tick, std::int64_t last_tick)
   for (std::int64_t second = std::max(second_of(first_tick), last - kSeconds + 1); second <= last;
        ++second) {
     const Second& entry = spoilt_[slot(std::max<std::int64_t>(second, 0))];
-    if (entry.number == second) kinds |= entry.kinds;
+    if (entry.number != second) continue;
+    for (const std::uint16_t some : entry.kinds) kinds |= some;
+    if (entry.gap) kinds |= kGapBit;
   }
   return kinds;
+}
+
+bool FaultBook::spoilt(FaultKind kind, FaultChannel channel, std::int64_t tick) const noexcept {
+  const std::int64_t second = second_of(tick);
+  const Second& entry = spoilt_[slot(std::max<std::int64_t>(second, 0))];
+  const unsigned kinds = entry.kinds[static_cast<std::size_t>(channel)];
+  return entry.number == second && (kinds >> static_cast<unsigned>(kind) & 1U) != 0;
 }
 
 }  // namespace dampline

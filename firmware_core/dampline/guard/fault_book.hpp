@@ -14,16 +14,23 @@ class FaultBook {
   static constexpr std::size_t kMost = kFaultKinds * kFaultChannels;
   static constexpr std::int64_t kSeconds = 4096;  ///< how far back spoilt seconds are known
 
+  static constexpr std::uint32_t kGapBit = 1U << kFaultKinds;  ///< see spoil_by_gap()
+
   explicit FaultBook(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
 
   /// One more event. Sizes of lost and repeated samples add, of the others the largest stays.
   void report(FaultKind kind, FaultChannel channel, double time_s, double size,
               std::uint64_t events = 1) noexcept;
   /// The samples of these ticks are not what the car did; both ends included.
-  void spoil(FaultKind kind, std::int64_t first_tick, std::int64_t last_tick) noexcept;
+  void spoil(FaultKind kind, FaultChannel channel, std::int64_t first_tick,
+             std::int64_t last_tick) noexcept;
+  /// Samples between these ticks are missing, which their ticks show: kGapBit beside kLostSamples.
+  void spoil_by_gap(std::int64_t first_tick, std::int64_t last_tick) noexcept;
   /// Bit k set: fault kind k spoils a second that holds one of these ticks.
   [[nodiscard]] std::uint32_t spoilt(std::int64_t first_tick,
                                      std::int64_t last_tick) const noexcept;
+  /// Whether this fault of this channel spoils the second of a tick.
+  [[nodiscard]] bool spoilt(FaultKind kind, FaultChannel channel, std::int64_t tick) const noexcept;
 
   [[nodiscard]] std::span<const Fault> faults() const noexcept { return {faults_.data(), size_}; }
   [[nodiscard]] const Fault* find(FaultKind kind, FaultChannel channel) const noexcept;
@@ -35,8 +42,13 @@ class FaultBook {
  private:
   struct Second {
     std::int64_t number{-1};
-    std::uint32_t kinds{0};
+    std::array<std::uint16_t, kFaultChannels> kinds{};  // bit k: fault kind k
+    bool gap{false};
   };
+  static_assert(kFaultKinds <= 16);
+  /// Calls for each second from the first tick's to the last one's.
+  template <typename Change>
+  void change(std::int64_t first_tick, std::int64_t last_tick, Change what) noexcept;
   [[nodiscard]] std::int64_t second_of(std::int64_t tick) const noexcept {
     return static_cast<std::int64_t>(static_cast<double>(tick) / rate_hz_);
   }

@@ -9,25 +9,17 @@ namespace dampline {
 namespace {
 
 constexpr double kNoNumberMps2 = 1e6;
-constexpr double kUnknownStepMps2 = 1e-4;  // the least unit of a code that nobody declared
-constexpr double kStuckS = 0.2;            // clean records hold a code for 10 samples at most
-constexpr std::int64_t kOthersMove = 8;    // codes that another channel spans meanwhile
+constexpr double kStuckS = 0.2;
+// Clean records of 12 bits hold a code for 10 samples at most, a car's own of 8 bits for 53.
+constexpr std::int64_t kStuckSamples = 80;
+constexpr std::int64_t kOthersMove = 8;  // codes that another channel spans meanwhile
 constexpr std::uint64_t kFewSaturated = 3;
-constexpr double kFewSpikes = 3.0;
-constexpr double kShareOfImpacts = 2.0;
-constexpr double kTallyKept = 0.98;  // a block
-constexpr double kWrongRate = 0.003;
-constexpr int kRateBlocks = 3;
 // A channel that is stuck or clips has no level of its own.
 constexpr std::uint32_t kNoLevel = 1U << static_cast<unsigned>(FaultKind::kStuckChannel) |
                                    1U << static_cast<unsigned>(FaultKind::kClipping);
 constexpr double kMostRateHz = 2000.0;
 
 bool positive_or_unknown(double x) noexcept { return x >= 0.0 && std::isfinite(x); }
-
-std::int64_t ticks_of(double seconds, double rate_hz) noexcept {
-  return std::lround(seconds * rate_hz);
-}
 
 }  // namespace
 
@@ -48,15 +40,11 @@ Result<GuardConfig> Guard::check(const GuardConfig& config) noexcept {
 
 Guard::Guard(const GuardConfig& config) noexcept
     : config_{config},
-      block_ticks_{ticks_of(kBlockS, config.sample_rate_hz)},
-      stuck_ticks_{ticks_of(kStuckS, config.sample_rate_hz)},
+      block_ticks_{ticks_of(kBlockS)},
+      stuck_ticks_{std::max(ticks_of(kStuckS), kStuckSamples)},
       book_{config.sample_rate_hz},
-      spikes_{SpikeWatch{ticks_of(2.0, config.sample_rate_hz)},
-              SpikeWatch{ticks_of(2.0, config.sample_rate_hz)},
-              SpikeWatch{ticks_of(2.0, config.sample_rate_hz)}},
-      levels_{LevelWatch{ticks_of(1.0, config.sample_rate_hz)},
-              LevelWatch{ticks_of(1.0, config.sample_rate_hz)},
-              LevelWatch{ticks_of(1.0, config.sample_rate_hz)}},
+      spikes_{SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}},
+      levels_{LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}},
       spectral_{config},
       wheelsets_{config.sample_rate_hz} {
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -95,6 +83,13 @@ void Guard::update(const Sample& sample) noexcept {
   if (sample.tick - block_start_ >= block_ticks_) close_block(sample.tick);
 }
 
+bool Guard::next_wrong_sample(WrongSample& out) noexcept {
+  if (wrong_pushed_ - wrong_popped_ > wrong_.size()) wrong_popped_ = wrong_pushed_ - wrong_.size();
+  if (wrong_popped_ == wrong_pushed_) return false;
+  out = wrong_[wrong_popped_++ % wrong_.size()];
+  return true;
+}
+
 // A few missing samples are bridged, so that what lives on delays goes on.
 void Guard::take_gap(const Sample& sample) noexcept {
   const std::int64_t missing = sample.tick - last_.tick - 1;
@@ -103,10 +98,11 @@ void Guard::take_gap(const Sample& sample) noexcept {
   if (lost > 0) {
     book_.report(FaultKind::kLostSamples, FaultChannel::kAll, book_.seconds(last_.tick + 1),
                  static_cast<double>(lost));
-    book_.spoil(FaultKind::kLostSamples, last_.tick, sample.tick);
+    book_.spoil_by_gap(last_.tick, sample.tick);
   }
   if (missing > kBridged) return restart();
   for (SpikeWatch& watch : spikes_) watch.restart();
+  for (ImpulsePower& impulses : impulses_) impulses.restart();
   repeats_.restart();
   const auto length = static_cast<double>(missing + 1);
   for (std::int64_t i = 1; i <= missing; ++i) {
@@ -121,22 +117,9 @@ void Guard::take_gap(const Sample& sample) noexcept {
   wheelsets_.strike(sample.tick);
 }
 
-// What was counted in other codes is forgotten.
-void Guard::use_learned_steps() noexcept {
-  knows_steps_ = true;
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    if (config_.step_mps2[c] > 0.0) continue;
-    knows_steps_ = knows_steps_ && steps_[c].step() > 0.0;
-    unit_mps2_[c] = std::max(steps_[c].step(), kUnknownStepMps2);
-    codes_[c] = CodeWatch{};
-    spikes_[c] = SpikeWatch{ticks_of(2.0, config_.sample_rate_hz)};
-    runs_[c] = {};
-  }
-  repeats_.restart();
-}
-
 void Guard::restart() noexcept {
   for (SpikeWatch& watch : spikes_) watch.restart();
+  for (ImpulsePower& impulses : impulses_) impulses.restart();
   for (LevelWatch& watch : levels_) watch.restart();
   repeats_.restart();
   spectral_.restart();
@@ -159,6 +142,7 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     codes_[c].update(sample.tick, codes[c]);
     spikes_[c].update(sample.tick, codes[c]);
+    impulses_[c].update(sample.accel_mps2[c]);
     LevelJump jump;
     if (!levels_[c].update(sample.tick, sample.accel_mps2[c], jump)) continue;
     if ((book_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) !=
@@ -166,7 +150,8 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
       continue;
     }
     book_.report(FaultKind::kDcJump, channel_of(c), book_.seconds(jump.tick), jump.size_mps2);
-    book_.spoil(FaultKind::kDcJump, jump.tick - block_ticks_ / 10, jump.tick + block_ticks_ / 10);
+    book_.spoil(FaultKind::kDcJump, channel_of(c), jump.tick - block_ticks_ / 10,
+                jump.tick + block_ticks_ / 10);
   }
 }
 
@@ -174,7 +159,7 @@ void Guard::watch_full_scale(const Sample& sample) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     if ((sample.saturated >> c & 1U) == 0) continue;
     if (saturated_[c]++ == 0) first_saturated_[c] = sample.tick;
-    book_.spoil(FaultKind::kClipping, sample.tick, sample.tick);
+    book_.spoil(FaultKind::kClipping, channel_of(c), sample.tick, sample.tick);
     if (saturated_[c] < kFewSaturated) continue;
     const bool first = saturated_[c] == kFewSaturated;
     book_.report(FaultKind::kClipping, channel_of(c),
@@ -202,10 +187,12 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     const bool stuck =
         sample.tick - run.first_tick + 1 >= stuck_ticks_ && run.highest - run.lowest > kOthersMove;
     if (!stuck) continue;
-    book_.spoil(FaultKind::kStuckChannel, run.reported ? sample.tick : run.first_tick, sample.tick);
+    book_.spoil(FaultKind::kStuckChannel, channel_of(c),
+                run.reported ? sample.tick : run.first_tick, sample.tick);
     if (run.reported) continue;
     run.reported = true;
-    book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(run.first_tick), kStuckS);
+    book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(run.first_tick),
+                 book_.seconds(stuck_ticks_));
   }
 }
 
@@ -222,77 +209,10 @@ void Guard::take_strikes() noexcept {
       continue;
     }
     tally.wrong += 1.0;
-    book_.spoil(FaultKind::kSpikes, strike.tick - 1, strike.tick + 1);
+    wrong_[wrong_pushed_++ % wrong_.size()] = {strike.tick, c};
+    book_.spoil(FaultKind::kSpikes, channel_of(c), strike.tick - 1, strike.tick + 1);
     if (tally.count < kPending) tally.pending[tally.count++] = strike;
   }
-}
-
-// Where many strikes are impacts, some of them are as narrow as a wrong sample.
-void Guard::judge_spikes(std::size_t channel) noexcept {
-  SpikeTally& tally = spike_tally_[channel];
-  const bool mostly_impacts = tally.wrong < kShareOfImpacts * tally.impacts;
-  if (mostly_impacts || rhythm_[channel].regular()) {
-    inputs_.impacts[channel] += tally.count;
-    tally.count = 0;
-  } else if (tally.wrong >= kFewSpikes) {
-    for (std::size_t i = 0; i < tally.count; ++i) {
-      const Strike& strike = tally.pending[i];
-      book_.report(FaultKind::kSpikes, channel_of(channel), book_.seconds(strike.tick),
-                   static_cast<double>(strike.height) * unit(channel));
-    }
-    tally.count = 0;
-  }
-  tally.impacts *= kTallyKept;
-  if (tally.wrong >= kFewSpikes) tally.wrong = std::max(tally.wrong * kTallyKept, kFewSpikes);
-}
-
-void Guard::take_code_verdict(std::size_t channel, std::int64_t tick) noexcept {
-  const CodeVerdict verdict = codes_[channel].close();
-  const double began_s = book_.seconds(block_start_);
-  if (verdict.dead_bits > 0 && config_.step_mps2[channel] > 0.0) {
-    book_.report(FaultKind::kResolutionLoss, channel_of(channel), began_s,
-                 std::ldexp(unit(channel), verdict.dead_bits));
-    book_.spoil(FaultKind::kResolutionLoss, block_start_, tick);
-  }
-  if (verdict.clips) {
-    book_.report(FaultKind::kClipping, channel_of(channel), book_.seconds(verdict.clip_first),
-                 std::abs(static_cast<double>(verdict.clip_code)) * unit(channel),
-                 static_cast<std::uint64_t>(verdict.clip_count));
-    book_.spoil(FaultKind::kClipping, block_start_, tick);
-  }
-}
-
-void Guard::close_block(std::int64_t tick) noexcept {
-  if (!knows_steps_) use_learned_steps();
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    take_code_verdict(c, tick);
-    judge_spikes(c);
-  }
-  repeats_.forget();
-  const bool whole = tick - block_start_ >= block_ticks_;
-  const bool sound = whole && spectral_.steady() && book_.spoilt(block_start_, tick) == 0;
-  wheelsets_.close_block(sound, tick, book_);
-  spectral_.set_difference(wheelsets_.difference_mps2());
-  if (spectral_.has_delay()) wheelsets_.set_delay(spectral_.delay_s());
-  judge_time(last_);
-  block_start_ = tick;
-  block_start_ns_ = last_.time_ns;
-}
-
-// Time that the samples carry against the rate that was declared.
-void Guard::judge_time(const Sample& sample) noexcept {
-  const double seconds = 1e-9 * static_cast<double>(sample.time_ns - block_start_ns_);
-  if (!(seconds > 0.0)) return;
-  const double rate_hz = static_cast<double>(sample.tick - block_start_) / seconds;
-  const bool wrong = std::abs(rate_hz / config_.sample_rate_hz - 1.0) > kWrongRate;
-  wrong_rate_blocks_ = wrong ? wrong_rate_blocks_ + 1 : 0;
-  if (wrong_rate_blocks_ < kRateBlocks) return;
-  book_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, book_.seconds(block_start_),
-               rate_hz);
-}
-
-void Guard::finish() noexcept {
-  if (any_ && last_.tick > block_start_) close_block(last_.tick);
 }
 
 }  // namespace dampline

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
 #include "dampline/guard/code_watch.hpp"
 #include "dampline/guard/fault_book.hpp"
 #include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/impulse_power.hpp"
 #include "dampline/guard/level_watch.hpp"
 #include "dampline/guard/regularity.hpp"
 #include "dampline/guard/repeat_watch.hpp"
@@ -18,6 +20,12 @@
 #include "dampline/sample/sample.hpp"
 
 namespace dampline {
+
+/// One value of one channel that no motion explains.
+struct WrongSample {
+  std::int64_t tick{0};
+  std::size_t channel{0};
+};
 
 /// Companion of the Identifier: names what is wrong with the data themselves, so that it is never
 /// taken for a property of the suspension. The same samples in, in any order of the two; faults at
@@ -48,6 +56,13 @@ class Guard {
                                      std::int64_t last_tick) const noexcept {
     return book_.spoilt(first_tick, last_tick);
   }
+  [[nodiscard]] bool spoilt(FaultKind kind, FaultChannel channel,
+                            std::int64_t tick) const noexcept {
+    return book_.spoilt(kind, channel, tick);
+  }
+  /// Single wrong samples, each told once and some 2 s after it was taken; false when there is no
+  /// more. Of those that nobody asks for in time the newest 16 stay.
+  [[nodiscard]] bool next_wrong_sample(WrongSample& out) noexcept;
   /// Impacts and changes of speed: input, not faults.
   [[nodiscard]] const GuardInputs& inputs() const noexcept { return inputs_; }
   /// Of the newest block of spectra that was judged.
@@ -88,6 +103,11 @@ class Guard {
   void take_code_verdict(std::size_t channel, std::int64_t tick) noexcept;
   [[nodiscard]] double unit(std::size_t channel) const noexcept { return unit_mps2_[channel]; }
 
+  static constexpr double kUnknownStepMps2 = 1e-4;  // least unit of a code that nobody declared
+  [[nodiscard]] std::int64_t ticks_of(double seconds) const noexcept {
+    return std::llround(seconds * config_.sample_rate_hz);
+  }
+
   GuardConfig config_;
   std::array<double, kChannels> unit_mps2_{};  // of a code
   std::array<StepMeter, kChannels> steps_{};
@@ -99,6 +119,7 @@ class Guard {
   std::array<CodeWatch, kChannels> codes_{};
   std::array<SpikeWatch, kChannels> spikes_;
   std::array<LevelWatch, kChannels> levels_;
+  std::array<ImpulsePower, kChannels> impulses_{};
   RepeatWatch repeats_;
   SpectralGuard spectral_;
   WheelsetWatch wheelsets_;
@@ -107,6 +128,9 @@ class Guard {
   std::array<std::int64_t, kChannels> first_saturated_{};
   std::array<SpikeTally, kChannels> spike_tally_{};
   std::array<Regularity, kChannels> rhythm_{};
+  std::array<WrongSample, 16> wrong_{};
+  std::size_t wrong_pushed_{0};
+  std::size_t wrong_popped_{0};
   std::int64_t first_repeat_{-1};
   bool any_{false};
   std::int64_t no_numbers_{0};  // samples since the last one that came with a value

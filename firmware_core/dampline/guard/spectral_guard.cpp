@@ -23,11 +23,13 @@ constexpr int kRateBlocks = 4;       // a timing step is named by then
 constexpr double kNoiseRatio = 3.5;  // of power, 1.9 times the declared deviation
 constexpr std::array<std::size_t, kChannels> kNoiseBlocks{3, 8, 8};  // the wheelsets' scatter more
 constexpr std::array<double, 2> kBurstRatio{3.0, 10.0};  // frame, wheelsets: they scatter more
+constexpr double kNoisy = 4.0;  // over the usual noise of the wheelsets: no block to judge gain by
 constexpr double kWhite = 1.4;
 // Of the wheelsets' incoherent power: it is known that well in many blocks and in one.
 constexpr double kLevelDoubt = 0.3;
 constexpr double kBurstDoubt = 1.2;
-constexpr double kLasting = 1.4;  // noise over the usual difference of the wheelsets
+constexpr double kImpulseShare = 1.5;  // impulses fall off towards half the rate, noise does not
+constexpr double kLasting = 1.4;       // noise over the usual difference of the wheelsets
 constexpr std::size_t kBurstBlocks = 5;
 constexpr std::uint64_t kFewImpacts = 3;  // a block
 
@@ -170,6 +172,7 @@ void SpectralGuard::align() noexcept {
 
 void SpectralGuard::judge_gain(FaultBook& book) noexcept {
   const BlockFigures& block = survey_.figures();
+  if (is_noisy(block)) return;  // a burst would pass for a change of gain
   gain_.add(block.log_gain, (block.first_tick + block.last_tick) / 2);
   if (gain_.size() < kGainBlocks) return;
   const BlockSeries::Step step = gain_.step();
@@ -217,13 +220,22 @@ double SpectralGuard::noise_limit(std::size_t channel) const noexcept {
   return kNoiseRatio * (noise * noise + step * step / 12.0) / (0.5 * config_.sample_rate_hz);
 }
 
+// Of the wheelsets, against the blocks before it.
+bool SpectralGuard::is_noisy(const BlockFigures& block) const noexcept {
+  if (noise_[1].size() < kBurstBlocks) return false;
+  const double usual = std::max(noise_[1].median(), noise_limit(1) + noise_limit(2));
+  const double now = block.noise[1] + block.noise[2] - kBurstDoubt * block.incoherent;
+  return usual > 0.0 && now > kNoisy * usual;
+}
+
 void SpectralGuard::judge_noise(FaultBook& book) noexcept {
   const BlockFigures& block = survey_.figures();
   const std::int64_t middle = (block.first_tick + block.last_tick) / 2;
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (!few_impacts_[c] || (c > 0 && !steady_)) continue;
-    level_[c].add(std::max(block.noise[c] - (c > 0 ? kLevelDoubt * block.incoherent : 0.0), 0.0),
-                  middle);
+    const double impulses = kImpulseShare * impulse_power_[c] / (0.5 * config_.sample_rate_hz);
+    const double not_noise = c > 0 ? kLevelDoubt * block.incoherent + impulses : 0.0;
+    level_[c].add(std::max(block.noise[c] - not_noise, 0.0), middle);
     if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
     BlockSeries newest = level_[c];
     newest.drop(newest.size() - std::min<std::size_t>(newest.size(), kNoiseBlocks[c] + 1));
@@ -254,10 +266,10 @@ void SpectralGuard::judge_burst(FaultBook& book, std::size_t which) noexcept {
     burst_tick_[which] = series.tick(i);
     const auto half = PairSpectra::kHop * std::int64_t{PairSpectra::kSegmentsPerBlock + 1} / 2;
     if (book.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;
-    book.spoil(FaultKind::kNoiseBurst, series.tick(i) - half, series.tick(i) + half);
-    book.report(FaultKind::kNoiseBurst,
-                which == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets,
-                book.seconds(series.tick(i)), std::sqrt(series[i] * 0.5 * config_.sample_rate_hz));
+    const FaultChannel where = which == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets;
+    book.spoil(FaultKind::kNoiseBurst, where, series.tick(i) - half, series.tick(i) + half);
+    book.report(FaultKind::kNoiseBurst, where, book.seconds(series.tick(i)),
+                std::sqrt(series[i] * 0.5 * config_.sample_rate_hz));
   }
 }
 

@@ -26,6 +26,10 @@ class SpectralGuard {
   void advance(FaultBook& book, GuardInputs& inputs) noexcept;
   /// Robust deviation of the second difference of a channel: white noise shows there, too.
   void set_change_scale(std::size_t channel, double mps2) noexcept { change_mps2_[channel] = mps2; }
+  /// What of a channel's fast motion comes in impulses, as white noise of that power.
+  void set_impulse_power(std::size_t channel, double power) noexcept {
+    impulse_power_[channel] = power;
+  }
   /// Root of the median squared difference of the wheelsets side by side: noise is in it all the
   /// time, impacts are not.
   void set_difference(double mps2) noexcept { difference_mps2_ = mps2; }
@@ -53,6 +57,7 @@ class SpectralGuard {
   void align() noexcept;
   void judge_gain(FaultBook& book) noexcept;
   void judge_rate(FaultBook& book) noexcept;
+  [[nodiscard]] bool is_noisy(const BlockFigures& block) const noexcept;
   void judge_noise(FaultBook& book) noexcept;
   void count_impacts(const GuardInputs& inputs) noexcept;
   void judge_burst(FaultBook& book, std::size_t which) noexcept;
@@ -67,6 +72,7 @@ class SpectralGuard {
   std::array<std::int64_t, 2> burst_tick_{-1, -1};
   std::array<BlockSeries, kChannels> level_{};
   std::array<double, kChannels> change_mps2_{};
+  std::array<double, kChannels> impulse_power_{};
   double difference_mps2_{0.0};
   Test next_{Test::kNone};
   bool aligned_{false};

@@ -209,7 +209,7 @@ void WheelsetWatch::report_slips(std::int64_t tick, FaultBook& book) noexcept {
     }
     const FaultKind kind = slip.samples > 0 ? FaultKind::kLostSamples : FaultKind::kRepeatedSamples;
     book.report(kind, FaultChannel::kAll, book.seconds(slip.tick), std::abs(slip.samples));
-    book.spoil(kind, slip.tick - 2 * kChunk, slip.tick + std::abs(whole_));
+    book.spoil(kind, FaultChannel::kAll, slip.tick - 2 * kChunk, slip.tick + std::abs(whole_));
   }
   slip_count_ = kept;
 }

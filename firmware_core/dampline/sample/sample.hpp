@@ -16,6 +16,7 @@ struct Sample {
   std::int64_t time_ns{0};  ///< time of the frame channel's sample
   std::array<double, kChannels> accel_mps2{};  ///< indexed by Channel, up is positive
   std::uint8_t saturated{0};                   ///< bit c set: channel c stood at full scale
+  bool spoilt{false};                          ///< not what the car did; nothing is made of it
 };
 
 }  // namespace dampline

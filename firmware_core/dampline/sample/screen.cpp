@@ -42,6 +42,7 @@ bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
     if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
     if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
   }
+  for (std::size_t c = 0; sample.spoilt && c < kChannels; ++c) mark(c, 1, Verdict::kSpoilt);
   for (std::size_t c = 0; c < kChannels; ++c) {
     judge_stuck(c);
     if (config_.find_flat_tops) judge_flat_top(c);

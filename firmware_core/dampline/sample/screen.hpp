@@ -10,7 +10,7 @@
 namespace dampline {
 
 /// In order of rank: a sample with several faults has the last.
-enum class Verdict : std::uint8_t { kGood, kStuck, kSaturated, kNotFinite };
+enum class Verdict : std::uint8_t { kGood, kSpoilt, kStuck, kSaturated, kNotFinite };
 
 /// A sample and whether its values are what the car did.
 struct Screened {
