@@ -101,13 +101,16 @@ TEST(BlackboxDamage, EveryTruncationLosesExactlyWhatIsCutOff) {
   }
 }
 
+// Of equal bytes in a row nobody can tell which one is missing: the last, then, and where its
+// record is the next one, the one before is whole.
 TEST(BlackboxDamage, EveryMissingByteLosesExactlyItsRecord) {
   const SmallBox box;
   for (std::size_t at = kRecordsAt; at < box.bytes().size(); ++at) {
     std::string bytes = box.bytes();
+    const std::size_t missing = std::min(bytes.find_first_not_of(bytes[at], at), bytes.size()) - 1;
     bytes.erase(at, 1);
     const BoxContent content = box.with(bytes);
-    ASSERT_EQ(content.numbers(), box.beside(at, at + 1)) << at;
+    ASSERT_EQ(content.numbers(), box.beside(missing, missing + 1)) << at;
     ASSERT_TRUE(content.all_true()) << at;
   }
 }
