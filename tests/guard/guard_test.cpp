@@ -117,15 +117,18 @@ TEST(Guard, MeasuresTheDriftOfAClock) {
   }
 }
 
+// By some 7 % the frame's lag behind one wheelset slips a period, and seems to follow.
 TEST(Guard, TellsAChangeOfSpeedFromATimingFault) {
-  const auto guard = run([](Trial& s) {
-    s.guard.speed_mps = 0.0;
-    s.simulation.speed.change_time_s = 70.0;
-    s.simulation.speed.changed_speed_mps = 1.08 * s.simulation.speed.speed_mps;
-    s.simulation.speed.ramp_mps2 = 0.1;
-  });
-  EXPECT_THAT(names(*guard), IsEmpty());
-  EXPECT_GE(guard->inputs().speed_changes, 1U);
+  for (const double factor : {0.88, 0.93, 0.96, 1.04, 1.07, 1.08, 1.1}) {
+    const auto guard = run([factor](Trial& s) {
+      s.guard.speed_mps = 0.0;
+      s.simulation.speed.change_time_s = 70.0;
+      s.simulation.speed.changed_speed_mps = factor * s.simulation.speed.speed_mps;
+      s.simulation.speed.ramp_mps2 = 0.1;
+    });
+    EXPECT_THAT(names(*guard), IsEmpty()) << factor;
+    EXPECT_GE(guard->inputs().speed_changes, 1U) << factor;
+  }
 }
 
 TEST(Guard, MeasuresAGainStep) {

@@ -11,14 +11,17 @@ constexpr double kSignificant = 12.0;    // of a step or trend; clean records st
 constexpr double kLeastDelayS = 150e-6;  // between the wheelsets
 constexpr double kLeastLagS = 0.5e-3;    // of the frame; friction and mass move it by 0.35 ms
 constexpr double kStays = 0.25;          // of the change of delay: what stays moves less
-constexpr double kMoves = 0.5;           // what moves, more
-constexpr double kSudden = 0.7;          // of the change, within
-constexpr std::size_t kSuddenHops = 4;   // segments of 0.85 s
-constexpr double kNoGapS = 8.0;          // across kSuddenHops + 2 segments
-constexpr double kSameWay = 0.5;         // of the frame's lag behind all alike
-constexpr double kStraight = 0.3;        // a clock does not change its rate, a driver does
-constexpr double kWholeDelay = 0.03;     // samples: a step this near a whole number of them
+// Of the change of delay: that near to it, or to nothing, are the frame's lags where one wheelset
+// is out of step; within 0.02 in simulated records, while a change of speed moves them by anything.
+constexpr double kOutOfStep = 0.1;
+constexpr double kSudden = 0.7;         // of the change, within
+constexpr std::size_t kSuddenHops = 4;  // segments of 0.85 s
+constexpr double kNoGapS = 8.0;         // across kSuddenHops + 2 segments
+constexpr double kSameWay = 0.5;        // of the frame's lag behind all alike
+constexpr double kStraight = 0.3;       // a clock does not change its rate, a driver does
+constexpr double kWholeDelay = 0.03;    // samples: a step this near a whole number of them
 constexpr double kWholeLag = 0.05;
+constexpr double kReachS = 20.0;       // from where a step is sought
 constexpr std::size_t kEnough = 7;     // blocks
 constexpr double kSameChangeS = 60.0;  // changes of speed this close are one
 
@@ -64,6 +67,10 @@ double TimingWatch::slope(const BlockSeries& series) const noexcept {
   return series.trend().per_block * blocks / seconds;
 }
 
+bool TimingWatch::jumped(std::int64_t tick) const noexcept {
+  return jump_tick_ >= 0 && static_cast<double>(std::abs(jump_tick_ - tick)) < kReachS * rate_hz_;
+}
+
 // The largest change of the delay within kSuddenHops segments round the step. Where the segments
 // there were no good, the wheelsets' difference tells.
 bool TimingWatch::sudden(std::int64_t tick, double size_s) const noexcept {
@@ -74,8 +81,8 @@ bool TimingWatch::sudden(std::int64_t tick, double size_s) const noexcept {
     };
     return middle_of(at(back - 1), at(back), at(back + 1));
   };
-  const auto reach = static_cast<std::int64_t>(20.0 * rate_hz_);
-  if (jump_tick_ >= 0 && std::abs(jump_tick_ - tick) < reach) return true;
+  if (jumped(tick)) return true;
+  const auto reach = static_cast<std::int64_t>(kReachS * rate_hz_);
   double largest = 0.0;
   for (std::size_t back = 1; back + kSuddenHops + 2 < held; ++back) {
     const auto tick_of = [&](std::size_t b) {
@@ -110,14 +117,20 @@ void TimingWatch::forget_before(std::int64_t tick) noexcept {
 }
 
 // A wheelset out of step: the frame lags it by as much less or more, and the other as before. Else
-// the frame's lag behind their mean stays when the speed changes.
-TimingWatch::Cause TimingWatch::cause_of(double delay_s,
-                                         const std::array<double, 3>& lag_s) noexcept {
-  const auto stays = [&](double lag) { return std::abs(lag) <= kStays * std::abs(delay_s); };
-  const auto moves = [&](double lag) { return std::abs(lag) > kMoves * std::abs(delay_s); };
-  if (moves(lag_s[1]) && stays(lag_s[2])) return Cause::kWheelset1;
-  if (moves(lag_s[2]) && stays(lag_s[1])) return Cause::kWheelset2;
-  return stays(lag_s[0]) ? Cause::kSpeed : Cause::kUnknown;
+// the frame's lag behind their mean stays when the speed changes. Where a wheelset is far out of
+// step or drifts, the lag behind the mean may stay as well.
+TimingWatch::Cause TimingWatch::cause_of(double delay_s, const std::array<double, 3>& lag_s,
+                                         bool may_stay) noexcept {
+  const double change_s = std::abs(delay_s);
+  const bool stays = std::abs(lag_s[0]) <= kStays * change_s;
+  if (stays && !may_stay) return Cause::kSpeed;
+  const auto out_of_step = [&](double moved_s, double other_s) {
+    return std::abs(std::abs(moved_s) - change_s) < kOutOfStep * change_s &&
+           std::abs(other_s) < kOutOfStep * change_s;
+  };
+  if (out_of_step(lag_s[1], lag_s[2])) return Cause::kWheelset1;
+  if (out_of_step(lag_s[2], lag_s[1])) return Cause::kWheelset2;
+  return stays ? Cause::kSpeed : Cause::kUnknown;
 }
 
 // True when the change explains what the frame's lag does as well.
@@ -135,7 +148,8 @@ bool TimingWatch::judge_wheelsets(FaultBook& book, GuardInputs& inputs) noexcept
     lag_s[i] = at_once ? lag_[i].change_at(tick) : lag_[i].change_since(delay_.tick(0));
   }
   const bool has_lag = lag_[0].size() + 2 >= delay_.size();
-  const Cause cause = has_lag ? cause_of(moved_s, lag_s) : Cause::kUnknown;
+  const Cause cause =
+      has_lag ? cause_of(moved_s, lag_s, !at_once || jumped(tick)) : Cause::kUnknown;
   if (cause == Cause::kSpeed ||
       (cause == Cause::kUnknown &&
        !sudden(tick, std::max(std::abs(change_s), std::abs(step.size))))) {

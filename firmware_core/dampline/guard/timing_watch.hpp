@@ -40,7 +40,9 @@ class TimingWatch {
     double delay_s{0.0};
   };
   enum class Cause : std::uint8_t { kUnknown, kSpeed, kWheelset1, kWheelset2 };
-  [[nodiscard]] static Cause cause_of(double delay_s, const std::array<double, 3>& lag_s) noexcept;
+  [[nodiscard]] static Cause cause_of(double delay_s, const std::array<double, 3>& lag_s,
+                                      bool may_stay) noexcept;
+  [[nodiscard]] bool jumped(std::int64_t tick) const noexcept;
   [[nodiscard]] bool judge_wheelsets(FaultBook& book, GuardInputs& inputs) noexcept;
   void take_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept;
   void judge_frame(FaultBook& book) noexcept;
