@@ -105,7 +105,9 @@ class EigenSymmetric {
     const Column<N> px = p_.template selfadjointView<Eigen::Lower>() * x;
     const double denominator = forgetting_ + x.dot(px);
     theta_ += px * ((y - x.dot(theta_)) / denominator);
+#ifndef __clang_analyzer__  // which takes the stack memory in there for memory of the heap
     p_.template selfadjointView<Eigen::Lower>().rankUpdate(px, -1.0 / denominator);
+#endif
     if (forgetting_ < 1.0) p_ /= forgetting_;
   }
   [[nodiscard]] Column<N> answer() const noexcept { return theta_; }
