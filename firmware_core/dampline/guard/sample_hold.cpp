@@ -59,7 +59,8 @@ void SampleHold::mark(const WrongSample& wrong) noexcept {
     }
   }
   if (newer >= count_ || held(newer).sample.tick != wrong.tick) return;
-  held(newer).wrong = static_cast<std::uint8_t>(held(newer).wrong | 1U << wrong.channel);
+  const std::uint32_t wrong_before = held(newer).wrong;
+  held(newer).wrong = static_cast<std::uint8_t>(wrong_before | 1U << wrong.channel);
 }
 
 void SampleHold::take_oldest(const Guard& guard, Sample& out) noexcept {
@@ -89,7 +90,8 @@ bool SampleHold::replace(std::size_t age, std::size_t channel) noexcept {
   const auto at = [&](std::size_t of) { return held(of).sample.accel_mps2[channel]; };
   sample.accel_mps2[channel] =
       (4.0 * (at(age + 1) + at(age - 1)) - at(age + 2) - at(age - 2)) / 6.0;
-  sample.saturated = static_cast<std::uint8_t>(sample.saturated & ~(1U << channel));
+  const std::uint32_t saturated = sample.saturated;
+  sample.saturated = static_cast<std::uint8_t>(saturated & ~(1U << channel));
   ++counts_.replaced;
   return true;
 }
