@@ -68,7 +68,7 @@ void SampleHold::take_oldest(const Guard& guard, Sample& out) noexcept {
   Held& oldest = held(age);
   bool spoilt = passes(guard.spoilt(oldest.sample.tick, oldest.sample.tick));
   for (std::size_t c = 0; c < kChannels; ++c) {
-    if ((oldest.wrong >> c & 1U) == 0) continue;
+    if (!oldest.is_wrong(c)) continue;
     if (!replace(age, c)) spoilt = true;
   }
   oldest.sample.spoilt = spoilt;
@@ -85,7 +85,7 @@ bool SampleHold::replace(std::size_t age, std::size_t channel) noexcept {
     const auto step = static_cast<std::int64_t>(i);
     const Held& after = held(age - i);
     if (held(age + i).sample.tick != sample.tick - step) return false;
-    if (after.sample.tick != sample.tick + step || (after.wrong >> channel & 1U) != 0) return false;
+    if (after.sample.tick != sample.tick + step || after.is_wrong(channel)) return false;
   }
   const auto at = [&](std::size_t of) { return held(of).sample.accel_mps2[channel]; };
   sample.accel_mps2[channel] =

@@ -37,6 +37,9 @@ class SampleHold {
   struct Held {
     Sample sample{};
     std::uint8_t wrong{0};  // bit c: channel c
+    [[nodiscard]] bool is_wrong(std::size_t channel) const noexcept {
+      return (std::uint32_t{wrong} >> channel & 1U) != 0;
+    }
   };
   [[nodiscard]] Held& held(std::size_t age) noexcept {
     return ring_[(newest_ + kRing - age) % kRing];
