@@ -54,7 +54,7 @@ void EvidenceMeter::add(const EvidencePoint& point) {
 /// Stretches of the excerpt's length, one after the other; the one with the most motion stays.
 void EvidenceMeter::keep(const EvidencePoint& p) {
   if (seen_++ % stride_ != 0) return;
-  current_.push_back({p.time_s, p.deflection_m, p.velocity_mps, p.measured_n, p.base_n, p.final_n});
+  current_.push_back(static_cast<const LoopRow&>(p));
   current_energy_ += p.deflection_m * p.deflection_m;
   const bool full =
       current_.size() == kExcerpt || current_.back().time_s - current_.front().time_s > excerpt_s_;

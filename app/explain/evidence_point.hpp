@@ -3,19 +3,15 @@
 #include <array>
 #include <cstddef>
 
+#include "app/run/evidence.hpp"
+
 namespace dampline::app {
 
 /// Signals beside the force with which a residual may be coherent.
 inline constexpr std::size_t kEvidenceChannels = 3;
 
 /// One instant of a record that was explained.
-struct EvidencePoint {
-  double time_s{0.0};
-  double deflection_m{0.0};
-  double velocity_mps{0.0};
-  double measured_n{0.0};
-  double base_n{0.0};
-  double final_n{0.0};
+struct EvidencePoint : LoopRow {
   std::array<double, kEvidenceChannels> channel{};
 
   [[nodiscard]] double before_n() const noexcept { return measured_n - base_n; }

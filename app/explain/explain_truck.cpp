@@ -26,13 +26,10 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
                     std::numeric_limits<double>::quiet_NaN()});
   };
   TruckPoints points{core.sample_rate_hz, core.moving_mass_kg, out.explanation, {keep, {}}};
-  bool started = false;
   TruckPassOptions options{scale_m, false, {}};
   options.watch = [&](const Sample& sample, const UpdateResult& result,
                       const effect::Diagnosis& diagnosis) {
-    if (!started) points.set_first_tick(sample.tick);
-    started = true;
-    points.take(result, diagnosis);
+    points.take(sample, result, diagnosis);
   };
   const TruckPass pass = pass_of(config, source, options);
   const auto found = explainer.predict(*pass.diagnosis, out.explanation);

@@ -87,13 +87,10 @@ void read_again(const Config& config, const ExplainOptions& options, const Ident
                      core.moving_mass_kg,
                      out.explanation,
                      {[&](const EvidencePoint& p) { meter.add(p); }, [&] { meter.gap(); }}};
-  bool started = false;
   TruckPassOptions again{first.diagnosis->scale_m(), options.show_progress, {}};
   again.watch = [&](const Sample& sample, const UpdateResult& result,
                     const effect::Diagnosis& diagnosis) {
-    if (!started) points.set_first_tick(sample.tick);
-    started = true;
-    points.take(result, diagnosis);
+    points.take(sample, result, diagnosis);
     if (twin != nullptr) twin->take(sample);
   };
   static_cast<void>(pass_of(config, options.source, again));

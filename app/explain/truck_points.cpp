@@ -37,7 +37,9 @@ TruckPoints::TruckPoints(double sample_rate_hz, double moving_mass_kg,
       weights_{mean_weights(sample_rate_hz)},
       held_(weights_.size()) {}
 
-void TruckPoints::take(const UpdateResult& result, const effect::Diagnosis& diagnosis) {
+void TruckPoints::take(const Sample& sample, const UpdateResult& result,
+                       const effect::Diagnosis& diagnosis) {
+  if (!first_tick_) first_tick_ = sample.tick;
   const std::int64_t tick = diagnosis.column_tick();
   if (tick >= 0 && any_motion_ && last_motion_.tick == tick) {
     if (tick != last_tick_ + 1) restart();
@@ -69,7 +71,7 @@ void TruckPoints::start_row(std::int64_t tick, const Motion& motion,
       0.5 * (motion.velocity_mps + now.wheelset_mps[0] + now.wheelset_mps[1]);
   // The columns are averages over the neighbours; so is what they are compared with.
   w.row[effect::kTarget] = -(before + 10.0 * now.accel_mps2[0] + after) / 12.0;
-  w.point.time_s = static_cast<double>(tick - first_tick_) / rate_hz_;
+  w.point.time_s = static_cast<double>(tick - *first_tick_) / rate_hz_;
   w.point.deflection_m = motion.deflection_m;
   w.point.velocity_mps = motion.velocity_mps;
   w.point.channel = now.accel_mps2;

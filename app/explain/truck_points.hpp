@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "app/explain/evidence_point.hpp"
@@ -21,12 +22,11 @@ class TruckPoints {
     std::function<void(const EvidencePoint&)> point;
     std::function<void()> gap;  ///< the next point does not follow the last one
   };
-  /// Points get their time from `first_tick`.
   TruckPoints(double sample_rate_hz, double moving_mass_kg, const effect::Explanation& explanation,
               Outlets outlets);
   /// What the Diagnosis made of its newest sample. Its scale must be that of the explanation's.
-  void take(const UpdateResult& result, const effect::Diagnosis& diagnosis);
-  void set_first_tick(std::int64_t tick) noexcept { first_tick_ = tick; }
+  /// Points get their time from the first sample.
+  void take(const Sample& sample, const UpdateResult& result, const effect::Diagnosis& diagnosis);
 
  private:
   /// A row of columns that waits for the positions of the wheelsets.
@@ -43,7 +43,7 @@ class TruckPoints {
   double mass_kg_;
   const effect::Explanation& explanation_;
   Outlets outlets_;
-  std::int64_t first_tick_{0};
+  std::optional<std::int64_t> first_tick_;
   Motion last_motion_{};
   bool any_motion_{false};
   std::int64_t last_tick_{-2};
