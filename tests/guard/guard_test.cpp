@@ -205,6 +205,18 @@ TEST(Guard, NamesNoiseAndItsBursts) {
   EXPECT_EQ(guard->spoilt(20 * 300, 50 * 300), 0U);
 }
 
+// The frame's fast power scatters from block to block where friction holds it.
+TEST(Guard, TakesTheScatterOfABlockForNoBurst) {
+  const auto guard = run([](Trial& s) {
+    s.length_s = 75.0;
+    s.simulation = sim::reference_run(sim::Load::kLaden, 60.0, 9122);
+    ASSERT_FALSE(sim::add_effect(s.simulation, "stribeck", {{"strength", 1.0294}}));
+    s.guard.speed_mps = 0.0;
+    s.guard.noise_mps2.fill(0.0);  // not declared
+  });
+  EXPECT_THAT(names(*guard), IsEmpty());
+}
+
 TEST(Guard, NamesASensorThatSaturates) {
   const auto guard = run([](Trial& s) { s.faults.saturation_mps2[2] = 12.0; });
   EXPECT_THAT(names(*guard), Contains("soft_saturation wheelset2"));

@@ -87,6 +87,19 @@ TEST(CodeWatch, SeesThePileAtAnEndAndTheBitsThatDoNotMove) {
   EXPECT_EQ(clean.dead_bits, 0);
 }
 
+// Twice as many at the extreme as next to it, by chance: three in each of fifteen blocks.
+TEST(CodeWatch, TakesAFewCodesMoreAtTheExtremeForChance) {
+  CodeWatch watch;
+  for (int block = 0; block < 15; ++block) {
+    for (int i = 0; i < 1000; ++i) watch.update(i, i % 150 - 75);
+    for (const int code : {200, 200, 200, 199}) watch.update(1000, code);
+    for (int code = 198; code > 180; --code) {
+      for (const int tick : {1001, 1002}) watch.update(tick, code);
+    }
+    EXPECT_FALSE(watch.close().clips) << "block " << block;
+  }
+}
+
 TEST(SpikeWatch, TellsAWrongSampleFromAnImpact) {
   sim::Random random{2, sim::Stream::kSensors};
   SpikeWatch watch{600};

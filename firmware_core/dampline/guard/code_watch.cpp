@@ -12,6 +12,8 @@ namespace {
 constexpr double kPileRatio = 1.5;
 constexpr double kPileSamples = 20.0;
 constexpr double kPileFloor = 3.0;
+// In a sound record the two counts differ by chance: by this many deviations at least in a pile.
+constexpr double kPileDeviations = 5.0;
 // Bits are judged where a channel spans this many codes.
 constexpr std::int64_t kEnough = 600;  // samples in a block
 constexpr std::int64_t kSpan = 24;
@@ -64,6 +66,8 @@ bool CodeWatch::judge(Pile& pile, const RangeEnd& end, std::int64_t span) noexce
     pile.inner[i] += static_cast<double>(end.inner(kWidths[i]));
     const double ratio = pile.outer[i] / (pile.inner[i] + kPileFloor);
     if (pile.outer[i] < kPileSamples || ratio <= kPileRatio) continue;
+    const double more = pile.outer[i] - pile.inner[i];
+    if (more * more < kPileDeviations * kPileDeviations * (pile.outer[i] + pile.inner[i])) continue;
     if (!pile.found) pile.level = end.extreme();
     pile.found = true;
   }

@@ -22,7 +22,9 @@ constexpr double kWrongRate = 0.003;
 constexpr int kRateBlocks = 4;       // a timing step is named by then
 constexpr double kNoiseRatio = 3.5;  // of power, 1.9 times the declared deviation
 constexpr std::array<std::size_t, kChannels> kNoiseBlocks{3, 8, 8};  // the wheelsets' scatter more
-constexpr std::array<double, 2> kBurstRatio{3.0, 10.0};  // frame, wheelsets: they scatter more
+// Over the median. Of the frame the power of a block scatters by a third where friction holds it,
+// and a median of the first five may be half of what it should be.
+constexpr std::array<double, 2> kBurstRatio{6.0, 10.0};  // frame, wheelsets: they scatter more
 constexpr double kNoisy = 4.0;  // over the usual noise of the wheelsets: no block to judge gain by
 constexpr double kWhite = 1.4;
 // Of the wheelsets' incoherent power: it is known that well in many blocks and in one.
