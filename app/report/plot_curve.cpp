@@ -142,8 +142,11 @@ PlotScript plot_curve(const RunResult& result) {
   for (const CurveRow& r : result.curve) largest = std::max(largest, std::fabs(r.force_n));
   const PlotUnit unit = plot_unit("N", largest);
   const double from_mps = resolved_from_mps(result);
+  // Where not one velocity is resolved, all are drawn, and the grey zone says so.
+  const double drawn_from_mps = 1e3 * from_mps * 1.05 < limit ? from_mps : 0.0;
   std::string script{kPlotFrame};
-  script += curve_data(resolved(result.curve, from_mps), unit.factor) + support_data(result.curve);
+  script +=
+      curve_data(resolved(result.curve, drawn_from_mps), unit.factor) + support_data(result.curve);
   script += fmt::format("set multiplot\nset xrange [{}:{}]\n", -limit, limit);
   script += unresolved_zone(from_mps) + curve_panel(unit.name, from_mps > 0.0) +
             enlarged_panel(unit.name) + support_panel();

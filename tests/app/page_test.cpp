@@ -47,6 +47,16 @@ TEST(Page, HoldsEverythingAndNeedsNothingElse) {
     EXPECT_THAT(page.html, HasSubstr(label));
 }
 
+TEST(Page, DrawsACurveOfWhichNothingIsResolved) {
+  RunResult result = fake_result();
+  for (Parameter& p : result.parameters)
+    if (p.name == "law_width") p.value = 1.0;
+  const Page page = make_page(result, some_provenance(), "");
+  if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot here: the drawings were not looked at";
+  EXPECT_EQ(page.warning, "");
+  EXPECT_EQ(count(page.html, "<svg"), 7U);
+}
+
 TEST(Page, ShowsAMethodThatIsNotToBeTrustedInGreyWithTheReason) {
   const std::string html = make_page(fake_result(), some_provenance(), "").html;
   EXPECT_THAT(html, AllOf(HasSubstr("<tr class=\"grey\"><td>Fokker-Planck, weak form"),
