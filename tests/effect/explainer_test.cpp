@@ -118,6 +118,18 @@ TEST(Explainer, ImpactsThatNoSensorSawAreNamed) {
   EXPECT_EQ(e.step[0].chosen.effect, Effect::kImpulsiveInput);
 }
 
+TEST(Explainer, ImpactsOnTheTwinTooAreNone) {
+  const Record record = explained("impulsive_input", 75);
+  const Record sound = explained("", 79, 150.0, record.diagnosis->scale_m());
+  const auto explainer = std::make_unique<Explainer>();
+  Explanation kept = record.explanation;
+  ASSERT_TRUE(explainer->apply_floor(*sound.diagnosis, 0, kept));
+  EXPECT_EQ(kept.step_count, 1U);
+  Explanation taken_back = record.explanation;
+  ASSERT_TRUE(explainer->apply_floor(*record.diagnosis, 0, taken_back));
+  EXPECT_EQ(taken_back.step_count, 0U);
+}
+
 TEST(Explainer, TooShortARecordIsNotJudged) {
   EXPECT_EQ(explained("", 76, 20.0).explanation.conclusion, Conclusion::kNotReady);
 }

@@ -32,6 +32,8 @@ bool Explainer::apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explan
     const ModelFit with = fitter_.fit(e.base_model.with(e.step[0].chosen));
     const double gain = with.ok ? 1.0 - with.held_out_nmse / base.held_out_nmse : 0.0;
     if (e.step[0].gain < kTwinGains * gain) drop_steps(e);
+  } else if (e.step_count > 0 && e.step[0].gain < kTwinGains * twin.impulses().share()) {
+    drop_steps(e);  // large residuals are rare in time on the twin too: those of sticking
   }
   evidence_.weigh(store, e.weight);
   const ModelFit final = fitter_.fit(e.base_model);
