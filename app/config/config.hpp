@@ -33,7 +33,8 @@ struct AntiAliasInput {
 };
 
 struct InputConfig {
-  double sample_rate_hz{300.0};  ///< nominal; the records' own time decides
+  double sample_rate_hz{300.0};    ///< nominal; the records' own time decides
+  bool sample_rate_is_set{false};  ///< by the configuration; a CSV file has its own otherwise
   AntiAliasInput anti_alias;
   CanConfig can;
   std::array<std::string, kColumns> columns{};  ///< header names; empty: the canonical name

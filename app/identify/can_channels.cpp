@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/error.hpp"
+#include "app/identify/thinner.hpp"
 #include "drivers/dbc/channel.hpp"
 #include "drivers/dbc/dbc.hpp"
 #include "sim_hw/nodes.hpp"
@@ -43,6 +44,11 @@ ChannelConfig channel(const drivers::Dbc& dbc, const InputConfig& input, std::si
 }  // namespace
 
 AssemblerConfig can_channels(const Config& config) {
+  if (thinning(config.input.sample_rate_hz) > 1)
+    throw UsageError{fmt::format(
+        "[input] sample_rate_hz: found {}, expected at most 400 for CAN frames; CSV files may have "
+        "more",
+        config.input.sample_rate_hz)};
   const drivers::Dbc dbc = open_dbc(config.input.can.dbc);
   AssemblerConfig assembler;
   assembler.sample_rate_hz = config.input.sample_rate_hz;

@@ -8,6 +8,7 @@
 
 #include "app/error.hpp"
 #include "app/identify/other_methods.hpp"
+#include "app/identify/record_rate.hpp"
 #include "app/identify/truck_result.hpp"
 #include "app/run/state_file.hpp"
 #include "app/text/quantity.hpp"
@@ -59,7 +60,7 @@ IdentifierConfig with_screen(IdentifierConfig core, const ScreenConfig& screen) 
 
 IdentifierConfig identifier_config(const Config& config) {
   IdentifierConfig core;
-  core.sample_rate_hz = config.input.sample_rate_hz;
+  core.sample_rate_hz = truck_rate_hz(config.input);
   core.moving_mass_kg = config.car.moving_mass_kg;
   core.velocity_corner_hz = config.model.velocity_corner_hz.value_or(0.0);
   core.anti_alias = {config.input.anti_alias.corner_hz, config.input.anti_alias.order};
@@ -76,9 +77,9 @@ IdentifierConfig identifier_config(const Config& config) {
                       effect)};
   if (!Identifier::check(core).ok())
     throw UsageError{
-        fmt::format("[input] sample_rate_hz: found {}, expected 150 to 400 for a truck's "
+        fmt::format("[input] sample_rate_hz: found {}, expected at least 150 for a truck's "
                     "accelerations (with [model] and [estimate] in their ranges)",
-                    core.sample_rate_hz)};
+                    config.input.sample_rate_hz)};
   return core;
 }
 
@@ -154,9 +155,10 @@ TruckView TruckRun::view() noexcept {
 
 RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const Config& config,
                         const std::string& source) {
-  const TruckRecord record = record_of(view, rate, config.input.sample_rate_hz, source);
+  const double nominal_hz = truck_rate_hz(config.input);
+  const TruckRecord record = record_of(view, rate, nominal_hz, source);
   RunResult result = describe_truck(record, config.model);
-  describe_faults(view.faults, record, config.input.sample_rate_hz, result.faults);
+  describe_faults(view.faults, record, nominal_hz, result.faults);
   describe_alarms(view.alarms, record, result);
   return result;
 }

@@ -15,7 +15,7 @@
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/explanation_json.hpp"
 #include "app/explain/rig/explain_rig.hpp"
-#include "app/identify/source_kind.hpp"
+#include "app/identify/record_rate.hpp"
 #include "app/report/stage_report.hpp"
 #include "app/rig/csv_rig_source.hpp"
 #include "app/rig/identify_rig.hpp"
@@ -80,13 +80,15 @@ Findings explain_rig_records(const Config& config, const Options& options) {
 }
 
 int explain(const Options& options) {
-  const Config config = options.config.empty() ? Config{} : load_config(options.config);
+  const Config given = options.config.empty() ? Config{} : load_config(options.config);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place, options.force};
-  const bool rig = detect_source(config, {options.records.front(), options.skip_bad_lines}) ==
-                   SourceKind::kRigCsv;
+  const SourceOptions first{options.records.front(), options.skip_bad_lines};
+  const SourceKind kind = detect_source(given, first);
+  const Config config = with_record_rate(given, first, kind);
   const bool show_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
-  Findings found = rig ? explain_rig_records(config, options)
+  Findings found = kind == SourceKind::kRigCsv
+                       ? explain_rig_records(config, options)
                        : explain_truck_record(config, options, show_progress);
   found.files.result.evidence.explanation = found.json;
   stage_files(found.files, directory);

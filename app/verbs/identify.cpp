@@ -13,6 +13,7 @@
 #include "app/config/config.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
+#include "app/identify/record_rate.hpp"
 #include "app/live/identify_live.hpp"
 #include "app/report/stage_report.hpp"
 #include "app/run/directory.hpp"
@@ -87,8 +88,9 @@ Config config_of(const Options& options) {
 }
 
 int identify(const Options& options) {
-  const Config config = config_of(options);
-  const SourceKind kind = detect_source(config, options.source);
+  const Config given = config_of(options);
+  const SourceKind kind = detect_source(given, options.source);
+  const Config config = with_record_rate(given, options.source, kind);
   check_live_flags(options, kind);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place,
