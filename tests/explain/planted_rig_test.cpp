@@ -194,6 +194,64 @@ TEST(ARig, LacksNothingWhereNothingIsMissing) {
   }
 }
 
+TEST(ARig, KnowsWhatItsNoiseLeaves) {
+  // 3 N of white noise on the force: what is left of a complete law.
+  const RigExplanation found = explained(simple(), false, 51);
+  double squares = 0.0;
+  double sum = 0.0;
+  double count = 0.0;
+  for (double t = 0.0; t < kLengthS; t += 1.0 / kRateHz) {
+    const double force_n = simple()(motion_at(t), 0.0);
+    squares += force_n * force_n;
+    sum += force_n;
+    ++count;
+  }
+  const double noise_nmse = 9.0 / (squares / count - (sum / count) * (sum / count));
+  // The deflection's noise adds what the reversals' instants cost.
+  EXPECT_GT(found.final.floor_nmse, 0.9 * noise_nmse);
+  EXPECT_NEAR(found.final.left_over_floor(), 1.0, 0.3);
+}
+
+TEST(ARig, IsToldWhereAFoundLawIsNotTheWholeTruth) {
+  // A friction element with a dead slot: no form of the library has its edges.
+  const RigExplanation found = explained(backlash(0.0037), false, 52);
+  ASSERT_FALSE(found.steps.empty());
+  EXPECT_GT(found.final.left_over_floor(), 1.5);
+  EXPECT_STREQ(found.verdict(), "partly_explained");
+  EXPECT_NE(to_json(found).find("like backlash, law incomplete"), std::string::npos);
+}
+
+TEST(ARig, NamesTwoEffectsRatherThanOneThatStandsForBoth) {
+  const RigExplanation found = explained(
+      [](const Motion& m, double) {
+        const double u = std::abs(m.velocity_mps) / 0.011;
+        return sign(m.velocity_mps) * (300.0 + 220.0 / (1.0 + u * u)) + 2500.0 * m.velocity_mps;
+      },
+      false, 53, {"coulomb"});
+  ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
+  std::vector<std::string> names{found.steps[0].effect, found.steps[1].effect};
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"stribeck", "viscous"})) << summarize(found);
+}
+
+TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
+  // Up and down at 20 mm/s: what a viscous force is cannot be told from Coulomb friction.
+  std::mt19937_64 random{54};
+  std::normal_distribution<double> noise;
+  std::string text = "time_s,deflection_m,force_n\n";
+  for (int i = 0; i < 30000; ++i) {
+    const double cycle = std::fmod(i / kRateHz * 0.5, 1.0);
+    const double x = 0.01 * (cycle < 0.5 ? 4.0 * cycle - 1.0 : 3.0 - 4.0 * cycle);
+    const double v = cycle < 0.5 ? 0.02 : -0.02;
+    text += fmt::format("{:.6f},{:.9f},{:.4f}\n", i / kRateHz, x + 2e-7 * noise(random),
+                        12000.0 * x + 9000.0 * v + 3.0 * noise(random));
+  }
+  const dampline::testing::TemporaryFile file{text, ".csv"};
+  Config config;
+  config.model.base = {"coulomb", "viscous"};
+  EXPECT_TRUE(explain_rig(config, {{file.path()}, {}, "", false}).steps.empty());
+}
+
 TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
   // A force that has nothing to do with the motion.
   const RigExplanation found = explained(

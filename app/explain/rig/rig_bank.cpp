@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/explain/rig/rig_rank.hpp"
 #include "app/explain/rig/rig_search.hpp"
 
 namespace dampline::app {
@@ -9,6 +10,15 @@ namespace {
 
 constexpr int kPoints = 400;
 constexpr double kFree = 0.1;  // of the level: as good as no force
+constexpr double kBankRidge = 1e-2;
+constexpr double kBankFrom = 0.4;  // travels that are tried, of the smallest form's
+constexpr double kBankTo = 2.1;
+constexpr double kBankStep = 1.15;
+constexpr std::size_t kBankSpread = 3;  // steps between the three travels of a bank
+constexpr double kSoft = 0.25;          // of the level
+constexpr double kPlay =
+    0.45;  // share of the build-up below that: free play; a straight one has 0.28
+constexpr double kUndecided = 1.6;  // between the errors of the smallest forms
 
 /// What a bank says in lengths and forces: coming from full slip on one side and moving to full
 /// slip on the other, slowly.
@@ -17,6 +27,7 @@ struct Read {
   double level_down_n{0.0};
   double free_play_m{0.0};
   double stiffness_npm{0.0};
+  double play_share{0.0};  ///< travel below kSoft over that between nine tenths of either level
 };
 
 Read read_bank(const std::vector<RigColumn>& columns, const Eigen::VectorXd& theta,
@@ -24,25 +35,93 @@ Read read_bank(const std::vector<RigColumn>& columns, const Eigen::VectorXd& the
   RigSeries slow;
   slow.start_m = -longest_m;
   slow.deflection_m.setLinSpaced(kPoints + 1, 0.0, 2.0 * longest_m);
-  slow.velocity_mps.setZero(kPoints + 1);
+  slow.velocity_mps.setConstant(kPoints + 1, 1e-9);
   slow.force_n.setZero(kPoints + 1);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(kPoints + 1);
+  double sign_n = 0.0;
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i].kind >= RigColumn::Kind::kStop)
       force += theta[static_cast<Eigen::Index>(i)] * evaluate(columns[i], slow);
+    else if (columns[i].kind == RigColumn::Kind::kSign)
+      sign_n += theta[static_cast<Eigen::Index>(i)];
+  force.tail(kPoints).array() += sign_n;
+  force[0] -= sign_n;
   Read out;
   out.level_up_n = force[kPoints];
   out.level_down_n = force[0];
   const double step_m = 2.0 * longest_m / kPoints;
   const double free_n = kFree * 0.5 * (std::abs(out.level_up_n) + std::abs(out.level_down_n));
-  for (Eigen::Index i = 0; i <= kPoints; ++i)
+  double between_m = 0.0;
+  double soft_m = 0.0;
+  for (Eigen::Index i = 0; i <= kPoints; ++i) {
     if (std::abs(force[i]) < free_n) out.free_play_m += step_m;
+    if (force[i] > (1.0 - kFree) * out.level_down_n && force[i] < (1.0 - kFree) * out.level_up_n)
+      between_m += step_m;
+    if (std::abs(force[i]) < kSoft / kFree * free_n) soft_m += step_m;
+  }
+  out.play_share = between_m > 0.0 ? soft_m / between_m : 0.0;
   for (Eigen::Index i = 4; i <= kPoints; ++i)
     out.stiffness_npm = std::max(out.stiffness_npm, (force[i] - force[i - 4]) / (4.0 * step_m));
   return out;
 }
 
+/// The hats of an element; the middle one of all but the first would be the first's again.
+ColumnSet hats_of(const BankElement& element, bool first) {
+  ColumnSet out = element.hats;
+  if (!first) out.erase(out.begin() + RigColumn::kHats / 2);
+  return out;
+}
+
 }  // namespace
+
+/// Three stop operators, their travels half as large again from one to the next, and what the
+/// longest loses with speed on either side, now and soon after breakaway.
+void RigSearch::refine(Chosen& memory) {
+  std::vector<BankElement> elements;
+  for (const double share : ratios(kBankFrom, kBankTo, kBankStep))
+    elements.push_back(add_bank_element(library_, share * memory.candidate.place));
+  evidence_ = std::make_unique<RigEvidence>(library_.columns, records_);
+  const RigCandidate small = memory.candidate;
+  double error = judge(chosen_columns()).fit.held_out_nmse;
+  ColumnSet best = small.columns;
+  memory.ridge = kBankRidge;
+  for (std::size_t i = kBankSpread; i + kBankSpread < elements.size(); ++i) {
+    const BankElement& shortest = elements[i - kBankSpread];
+    const BankElement& longest = elements[i + kBankSpread];
+    ColumnSet columns = joined(hats_of(elements[i], true), hats_of(shortest, false));
+    columns = joined(joined(columns, hats_of(longest, false)), longest.speed);
+    memory.candidate.columns = columns;
+    const RigFit fit = judge(chosen_columns()).fit;
+    if (!fit.ok || fit.held_out_nmse >= error) continue;
+    error = fit.held_out_nmse;
+    best = columns;
+    bank_ = {shortest, elements[i], longest};
+  }
+  memory.candidate.columns = best;
+  if (bank_.empty()) {
+    memory.ridge = 0.0;
+    return;
+  }
+  base_friction_left_ = false;
+  base_friction_left_ = judge(chosen_columns()).fit.held_out_nmse > error;
+  rename_memory(memory);
+}
+
+/// Where the smallest forms are close, the bank's shape decides: free play is a build-up that
+/// pauses at no force.
+void RigSearch::rename_memory(Chosen& memory) const {
+  if (memory.other_memory == 0.0 || memory.other_memory > kUndecided) return;
+  const Judged now = judge(chosen_columns());
+  std::vector<RigColumn> columns;
+  for (const Eigen::Index i : set_of(chosen_columns(), now.width))
+    columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  double longest_m = 0.0;
+  for (const BankElement& e : bank_) longest_m = std::max(longest_m, e.travel_m);
+  const Read read = read_bank(columns, now.fit.theta, longest_m);
+  std::string& effect = memory.step.effect;
+  if (read.play_share > kPlay) effect = "backlash";
+  memory.candidate.effect = effect;
+}
 
 /// The deviation of each figure by the jackknife over the folds.
 void RigSearch::describe_bank(Chosen& chosen, const Judged& now) const {

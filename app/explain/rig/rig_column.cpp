@@ -12,6 +12,7 @@ namespace {
 using Kind = RigColumn::Kind;
 
 constexpr double kBreakawayM = 0.010;
+constexpr double kEdgeFrom = 0.9;
 
 double hat(double u, double node) {
   const double width = 2.0 / (RigColumn::kHats - 1);
@@ -46,6 +47,10 @@ double static_value(const RigColumn& c, double x, double v) {
       return std::tanh(v / c.a);
     case Kind::kFading:
       return std::tanh(v / c.a) * std::exp(-std::abs(v) / c.b);
+    case Kind::kFadingSquare:
+      return std::tanh(v / c.a) * std::exp(-v * v / (c.b * c.b));
+    case Kind::kFadingSlowly:
+      return std::tanh(v / c.a) / (1.0 + v * v / (c.b * c.b));
     case Kind::kProgressive:
       return std::tanh(v / c.a) * x;
     case Kind::kProgressiveAbsolute:
@@ -63,6 +68,8 @@ double memory_value(const RigColumn& c, double u, double v, double slip_m) {
       return std::pow(std::max(u, 0.0), 4);
     case Kind::kGapDown:
       return -std::pow(std::max(-u, 0.0), 4);
+    case Kind::kEdge:
+      return std::copysign(std::max(0.0, (std::abs(u) - kEdgeFrom) / (1.0 - kEdgeFrom)), u);
     case Kind::kHat:
       return hat(u, c.b);
     case Kind::kFall:

@@ -26,11 +26,14 @@ struct RigColumn {
     kSpeedSquared,         ///< v |v|
     kSign,                 ///< tanh(v / a)
     kFading,               ///< tanh(v / a) exp(-|v| / b): friction that falls with speed
+    kFadingSquare,         ///< tanh(v / a) exp(-(v / b)^2)
+    kFadingSlowly,         ///< tanh(v / a) / (1 + (v / b)^2)
     kProgressive,          ///< tanh(v / a) x
     kProgressiveAbsolute,  ///< tanh(v / a) |x|
     kStop,                 ///< u of travel a
     kGapUp,                ///< max(u, 0)^4 of travel a: no force about the middle
     kGapDown,              ///< -max(-u, 0)^4
+    kEdge,                 ///< nothing but the full level at either end of travel a
     kHat,                  ///< broken-line basis over u: the hat about -1 + 2 b / (kHats - 1)
     kFall,                 ///< |v| clip(2 b u - 1, 0, 1), b = +-1: a level that falls with speed
     kBreakaway             ///< |v| exp(-slip / 10 mm) once side b = +-1 slips

@@ -41,13 +41,27 @@ Json model_json(const RigModel& model, const std::vector<std::string>& records) 
           {"parameters", parameters_json(model.parameters)}};
 }
 
-Json step_json(const RigStep& step) {
+/// "like X, law incomplete", where more is left than a complete law would leave.
+Json note_of(const RigExplanation& e, const RigStep& step) {
+  if (e.is_complete()) return nullptr;
+  return fmt::format("like {}, law incomplete", step.effect);
+}
+
+Json floor_json(const RigModel& model, double value) {
+  return model.floor_nmse > 0.0 ? Json(value) : Json(nullptr);
+}
+
+Json step_json(const RigExplanation& e, const RigStep& step) {
   return {{"effect", step.effect},
           {"terms", step.terms},
           {"held_out_nmse_before", step.held_out_before},
           {"held_out_nmse_after", step.held_out_after},
           {"parameters", parameters_json(step.parameters)},
-          {"evidence", {{"gain", step.gain}, {"block_t", step.block_t}}},
+          {"evidence",
+           {{"gain", step.gain},
+            {"block_t", step.block_t},
+            {"left_over_floor", floor_json(e.final, e.final.left_over_floor())}}},
+          {"note", note_of(e, step)},
           {"runners_up", judged_json(step.runners_up)}};
 }
 
@@ -81,18 +95,44 @@ std::string model_text(const char* name, const RigModel& model) {
                      std::sqrt(model.fit.held_out_nmse), mean_rrse(model.fit), terms);
 }
 
+const char* sentence(const RigExplanation& e) {
+  if (!e.alike.empty() && e.steps.empty())
+    return "effects that this record cannot tell apart explain what is left alike: none is named";
+  if (!e.steps.empty())
+    return e.is_complete() ? "the model lacked what follows"
+                           : "the model lacked what follows, and something more";
+  return e.is_complete() ? "no effect of the library improves the model"
+                         : "something is left that no effect of the library explains";
+}
+
+std::string floor_text(const RigExplanation& e) {
+  if (!(e.final.floor_nmse > 0.0)) return "floor  not known\n";
+  std::string text = fmt::format(
+      "floor  held-out rrse {:.3g} by noise and resolution alone; left: {:.2f} times that (nmse)\n",
+      std::sqrt(e.final.floor_nmse), e.final.left_over_floor());
+  if (!e.is_complete() && !e.steps.empty())
+    text += fmt::format("       like {}, law incomplete\n", e.steps.front().effect);
+  if (!e.alike.empty()) text += fmt::format("alike  {}\n", e.alike);
+  return text;
+}
+
 }  // namespace
 
+bool RigExplanation::is_complete() const noexcept {
+  const double nmse = final.fit.held_out_nmse;
+  const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
+  return alike.empty() && (nmse <= above * final.floor_nmse || nmse < kNegligible);
+}
+
 const char* RigExplanation::verdict() const {
-  const bool little = final.fit.held_out_nmse < kLittle;
-  if (steps.empty()) return little ? "complete" : "unexplained";
-  return little ? "explained" : "partly_explained";
+  if (steps.empty()) return is_complete() ? "complete" : "unexplained";
+  return is_complete() ? "explained" : "partly_explained";
 }
 
 std::string to_json(const RigExplanation& e) {
   Json steps = Json::array();
-  for (const RigStep& step : e.steps) steps.push_back(step_json(step));
-  const bool unknown = e.final.fit.held_out_nmse >= RigExplanation::kLittle;
+  for (const RigStep& step : e.steps) steps.push_back(step_json(e, step));
+  const bool unknown = !e.is_complete();
   if (unknown && e.steps.empty())
     steps.push_back(unknown_step(e.base.terms, e.base.fit.held_out_nmse, e.signature));
   Json validation = Json::array();
@@ -103,7 +143,9 @@ std::string to_json(const RigExplanation& e) {
       {"steps", steps},
       {"final", model_json(e.final, e.records)},
       {"rejected", judged_json(e.rejected)},
-      {"floor_nmse", nullptr},
+      {"alike", e.alike.empty() ? Json(nullptr) : Json(e.alike)},
+      {"floor_nmse", floor_json(e.final, e.final.floor_nmse)},
+      {"left_over_floor", floor_json(e.final, e.final.left_over_floor())},
       {"held_out", e.whole_records ? "records" : "blocks"},
       {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
       {"validation", validation},
@@ -115,13 +157,8 @@ std::string to_json(const RigExplanation& e) {
 
 std::string summarize(const RigExplanation& e) {
   std::string text = fmt::format(
-      "{}: {}\n  held out: {}; what the sensors alone would leave is not known, {} % of the "
-      "variance counts as little\n",
-      e.verdict(),
-      e.steps.empty() ? "no effect of the library improves the model"
-                      : "the model lacked what follows",
-      e.whole_records ? "one whole record at a time" : "interleaved blocks, five folds",
-      100.0 * RigExplanation::kLittle);
+      "{}: {}\n  held out: {}\n", e.verdict(), sentence(e),
+      e.whole_records ? "one whole record at a time" : "interleaved blocks, five folds");
   if (e.filter_hz > 0.0)
     text += fmt::format("  errors of force and model behind the same filter, -3 dB at {:.4g} Hz\n",
                         e.filter_hz);
@@ -135,7 +172,7 @@ std::string summarize(const RigExplanation& e) {
       text +=
           fmt::format("    {:<36} {} {:.3f}\n", "runner-up", c.effect, std::sqrt(c.held_out_nmse));
   }
-  text += model_text("final", e.final);
+  text += model_text("final", e.final) + floor_text(e);
   text += "what is left: " + describe(e.signature) + "\n";
   for (const RigValidated& v : e.validation) {
     text += fmt::format("never fitted: {}: rrse {:.3f} -> {:.3f}", v.record, v.rrse_before,

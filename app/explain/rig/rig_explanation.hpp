@@ -28,6 +28,12 @@ struct RigModel {
   std::vector<RigColumn> columns;
   RigFit fit;
   std::vector<Parameter> parameters;
+  double floor_nmse{0.0};         ///< what the law leaves of its own twin; 0: not known
+  double floor_noise_share{0.0};  ///< of it, what the noise of the force makes
+  /// What is left, over that.
+  [[nodiscard]] double left_over_floor() const noexcept {
+    return floor_nmse > 0.0 ? fit.held_out_nmse / floor_nmse : 0.0;
+  }
 };
 
 /// Errors on a record that was never fitted. The force sets nothing but the slip at the start,
@@ -55,9 +61,13 @@ struct RigExplanation {
   bool whole_records{false};
   Evidence evidence;    ///< but for its JSON
   Signature signature;  ///< of what the final model leaves
-  /// What the sensors alone would leave is not known: kLittle decides.
+  std::string alike;    ///< effects that explain alike, so that none is named; empty
   [[nodiscard]] const char* verdict() const;
-  static constexpr double kLittle = 0.01;  ///< held-out nmse
+  /// No more is left than noise and resolution make.
+  [[nodiscard]] bool is_complete() const noexcept;
+  static constexpr double kIncompleteAbove = 1.5;  ///< times the floor that noise makes
+  static constexpr double kMotionAbove = 3.0;      ///< times what errors of the motion make
+  static constexpr double kNegligible = 1e-5;      ///< nmse that no rig is held to
 };
 
 /// As explanation.json holds it.

@@ -17,6 +17,24 @@ constexpr double kNoiseTimes = 3.0;  // a shorter stop would follow the noise
 constexpr double kShortestMemory = 6e-3;
 constexpr double kMemoryRatio = 1.25;
 constexpr double kLongestMemory = 0.8;
+constexpr double kSteady = 1.3;  // between the speeds that a fifth of the time is below and above
+
+bool is_steady(const std::vector<RigSeries>& records) {
+  std::vector<double> speed;
+  for (const RigSeries& s : records)
+    for (const double v : s.velocity_mps) speed.push_back(std::abs(v));
+  const auto at = [&](std::size_t fifths) {
+    const auto place = speed.begin() + static_cast<std::ptrdiff_t>(speed.size() * fifths / 5);
+    std::nth_element(speed.begin(), place, speed.end());
+    return *place;
+  };
+  return at(4) < kSteady * at(1);
+}
+
+bool needs_speeds(const std::string& effect) {
+  return effect == "viscous" || effect == "asymmetric_viscous" || effect == "quadratic_damping" ||
+         effect == "stribeck";
+}
 
 void add_memory(RigLibrary& out, const RigScale& scale) {
   for (const double share : ratios(kShortestMemory, kLongestMemory, kMemoryRatio)) {
@@ -27,6 +45,7 @@ void add_memory(RigLibrary& out, const RigScale& scale) {
     const Eigen::Index up = out.add({Kind::kGapUp, a, 0.0});
     const Eigen::Index down = out.add({Kind::kGapDown, a, 0.0});
     out.candidates.push_back({"backlash", a, {up, down}, 1});
+    out.candidates.push_back({"backlash", a, {out.add({Kind::kEdge, a, 0.0})}, 1});
   }
 }
 
@@ -38,7 +57,8 @@ void add_friction(RigLibrary& out, const RigScale& scale) {
       {"progressive_friction", 0.0, {out.add({Kind::kProgressiveAbsolute, a, 0.0})}, 0});
   for (const double share : ratios(0.05, 2.0, 1.6)) {
     const double speed = share * scale.velocity_mps;
-    out.candidates.push_back({"stribeck", speed, {out.add({Kind::kFading, a, speed})}, 1});
+    for (const Kind shape : {Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly})
+      out.candidates.push_back({"stribeck", speed, {out.add({shape, a, speed})}, 1});
   }
 }
 
@@ -102,6 +122,7 @@ RigScale scale_of(const std::vector<RigSeries>& records) {
     out.sign_mps = std::max(out.sign_mps, s.config.sign_width_mps);
   }
   out.velocity_mps = std::sqrt(squares / samples);
+  out.steady = is_steady(records);
   return out;
 }
 
@@ -139,7 +160,9 @@ RigLibrary make_library(const Config& config, const RigScale& scale) {
       out.candidates.push_back({"coulomb", 0.0, {sign}, 1});
   }
   if (!out.base_offset) out.candidates.push_back({"offset_force", 0.0, {out.offset}, 0});
-  std::erase_if(out.candidates, [&](const RigCandidate& c) { return !is_wanted(c.effect); });
+  std::erase_if(out.candidates, [&](const RigCandidate& c) {
+    return !is_wanted(c.effect) || (scale.steady && needs_speeds(c.effect));
+  });
   return out;
 }
 

@@ -25,6 +25,7 @@ struct RigScale {
   double velocity_mps{0.0};
   double noise_m{0.0};
   double sign_mps{0.0};  ///< below it the sign of v is uncertain
+  bool steady{false};    ///< all motion is at one speed: nothing can be a function of it
 };
 [[nodiscard]] RigScale scale_of(const std::vector<RigSeries>& records);
 

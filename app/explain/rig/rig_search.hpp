@@ -6,6 +6,7 @@
 
 #include "app/explain/rig/rig_explanation.hpp"
 #include "app/explain/rig/rig_library.hpp"
+#include "app/explain/rig/rig_twin.hpp"
 
 namespace dampline::app {
 
@@ -22,10 +23,19 @@ class RigSearch {
     RigCandidate candidate;
     RigStep step;
     double ridge{0.0};
+    double other_memory{0.0};
   };
   struct Judged {
     RigFit fit;
     std::size_t width{0};
+  };
+
+  /// The best candidate of an effect.
+  struct Ranked {
+    const RigCandidate* candidate{nullptr};
+    double gain{0.0};
+    double t{0.0};
+    RigFit fit;
   };
 
   [[nodiscard]] ColumnSet set_of(const ColumnSet& more, std::size_t width) const;
@@ -34,7 +44,16 @@ class RigSearch {
   [[nodiscard]] double ridge() const;
   [[nodiscard]] bool can_add(const RigCandidate& candidate) const;
   [[nodiscard]] std::vector<std::string> terms() const;
+  [[nodiscard]] RigFloor floor_of(const ColumnSet& more) const;
+  [[nodiscard]] std::vector<Ranked> rank() const;
+  [[nodiscard]] bool passes(const Ranked& top, double before_nmse) const;
+  [[nodiscard]] RigFit best_with(const RigCandidate& first) const;
+  void prefer_beside_another(std::vector<Ranked>& order) const;
+  void prefer_to_offset(std::vector<Ranked>& order) const;
+  [[nodiscard]] std::string alike(const std::vector<Ranked>& order) const;
   bool forward();
+  [[nodiscard]] static double other_memory_of(const std::vector<Ranked>& order);
+  void rename_memory(Chosen& memory) const;
   void backward();
   void refine(Chosen& memory);
   void try_linear(bool& added);
@@ -55,6 +74,7 @@ class RigSearch {
   bool spring_added_{false};
   bool mass_added_{false};
   std::vector<JudgedCandidate> rejected_;  ///< of the newest round
+  std::string alike_;                      ///< effects that the newest round could not tell apart
 };
 
 }  // namespace dampline::app
