@@ -79,9 +79,7 @@ double memory_value(const RigColumn& c, double u, double v, double slip_m) {
   }
 }
 
-}  // namespace
-
-Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series) {
+Eigen::VectorXd steady(const RigColumn& column, const RigSeries& series) {
   const Eigen::Index count = series.size();
   Eigen::VectorXd out{count};
   double z_m = std::clamp(series.start_m, -column.a, column.a);
@@ -104,6 +102,20 @@ Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series) {
     z_m = std::clamp(z_m + step_m, -column.a, column.a);
     slip_m = std::abs(z_m) >= column.a ? slip_m + std::abs(step_m) : 0.0;
     out[i] = memory_value(column, z_m / column.a, v, slip_m);
+  }
+  return out;
+}
+
+}  // namespace
+
+Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series) {
+  Eigen::VectorXd out = steady(column, series);
+  if (column.time == RigColumn::Time::kSteady) return out;
+  const bool slope = column.time == RigColumn::Time::kSlope;
+  const double whole = static_cast<double>(std::max<Eigen::Index>(series.size() - 1, 1));
+  for (Eigen::Index i = 0; i < series.size(); ++i) {
+    const double share = static_cast<double>(i) / whole;
+    out[i] *= slope ? share - 0.5 : static_cast<double>(share > column.at);
   }
   return out;
 }

@@ -39,10 +39,14 @@ struct RigColumn {
     kBreakaway             ///< |v| exp(-slip / 10 mm) once side b = +-1 slips
   };
   static constexpr int kHats = 11;
+  /// What changes over the record: evenly from -1/2 to 1/2, or from 0 to 1 after a share `at`.
+  enum class Time : std::uint8_t { kSteady, kSlope, kStep };
 
   Kind kind{Kind::kOne};
   double a{0.0};
   double b{0.0};
+  Time time{Time::kSteady};
+  double at{0.0};
 };
 
 /// A column at every sample of a record; kInertia gives x, which only filtered_rows differentiates.

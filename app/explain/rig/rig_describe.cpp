@@ -91,9 +91,37 @@ void RigSearch::describe_sides(Chosen& c, const Judged& now, const ColumnSet& se
       {"viscous_negative", level - difference, std::sqrt(std::max(squares - both, 0.0)), "N s/m"});
 }
 
+/// The change over the record, of the mean or of the value before it.
+void RigSearch::describe_drift(Chosen& c, const Judged& now, const ColumnSet& set) const {
+  const auto at = std::find(set.begin(), set.end(), c.candidate.columns.front()) - set.begin();
+  const RigColumn& drifting =
+      library_.columns[static_cast<std::size_t>(set[static_cast<std::size_t>(at)])];
+  const double change = now.fit.theta[at];
+  const double std = std::sqrt(std::max(now.fit.covariance(at, at), 0.0));
+  double of = 0.0;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const RigColumn& steady = library_.columns[static_cast<std::size_t>(set[i])];
+    const bool same = steady.kind == drifting.kind ||
+                      (drifting.kind != RigColumn::Kind::kVelocity &&
+                       drifting.kind != RigColumn::Kind::kDeflection && library_.base_friction &&
+                       set[i] == library_.friction[now.width]);
+    if (same && steady.time == RigColumn::Time::kSteady)
+      of = now.fit.theta[static_cast<Eigen::Index>(i)];
+  }
+  if (of == 0.0) return;
+  const double percent = 100.0 / std::abs(of);
+  c.step.parameters.front().value = percent * std::copysign(1.0, of) * change;
+  c.step.parameters.front().std = percent * std;
+}
+
 void RigSearch::describe_steps(const Judged& now) {
   const ColumnSet set = set_of(chosen_columns(), now.width);
   for (Chosen& c : chosen_) {
+    if (c.step.effect == "time_skew") continue;
+    if (c.step.effect == "time_drift") {
+      describe_drift(c, now, set);
+      continue;
+    }
     const auto at = std::find(set.begin(), set.end(), c.candidate.columns.front()) - set.begin();
     if (c.ridge > 0.0)
       describe_bank(c, now);

@@ -16,6 +16,7 @@ constexpr double kSmallGain = 0.025;  // passes with kSignificant
 constexpr double kSignificant = 2.0;
 constexpr double kLaterGain = 0.2;  // what the first leaves has many likenesses
 constexpr double kLaterSignificant = 3.0;
+constexpr double kShortSkew = 1.0;    // samples: when within one a force changed is not known
 constexpr double kRest = 0.5;         // of the excess: what takes it needs only kClearGain
 constexpr double kOfExcess = 0.1;     // what an effect must take of what is left over the floor
 constexpr double kMotionFloor = 0.5;  // how well the part of the floor is known that motion makes
@@ -176,6 +177,7 @@ bool RigSearch::passes(const Ranked& top, double before_nmse) const {
   const double unsure = kMotionFloor * (1.0 - floor.noise_share);
   const bool sure = top.gain > kClearGain && top.t > kSure && floor.noise_share > kMotionFloor;
   if (before_nmse < RigExplanation::kNegligible) return false;
+  if (top.needs_excess && before_nmse < RigExplanation::kIncompleteAbove * floor.nmse) return false;
   if (!sure && before_nmse < (1.0 + unsure) * floor.nmse) return false;
   if (top.gain * before_nmse < kOfExcess * (before_nmse - floor.nmse)) return false;
   if (chosen_.empty())
@@ -197,6 +199,15 @@ bool RigSearch::forward() {
   for (std::size_t i = 0; i < order.size() && i <= kRunnersUp; ++i)
     rejected_.push_back(
         {order[i].candidate->effect, order[i].fit.held_out_nmse, order[i].gain, order[i].t});
+  const std::optional<RigTrial> trial = best_trial();
+  if (trial && is_better(*trial, order)) {
+    const Ranked as_ranked{&library_.candidates.front(), trial->gain, trial->t, trial->fit,
+                           std::abs(trial->skew_s) < kShortSkew * records_.front().interval_s};
+    if (passes(as_ranked, trial->fit.held_out_nmse / (1.0 - trial->gain))) {
+      take(*trial, before.fit.held_out_nmse);
+      return true;
+    }
+  }
   if (!passes(top, top.fit.held_out_nmse / (1.0 - top.gain))) return false;
   alike_ = alike(order);
   if (!alike_.empty()) return false;

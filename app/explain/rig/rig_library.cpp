@@ -155,6 +155,8 @@ RigLibrary make_library(const Config& config, const RigScale& scale) {
     return std::find(wanted.begin(), wanted.end(), "all") != wanted.end() ||
            std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
+  out.wants_skew = is_wanted("time_skew");
+  out.wants_drift = is_wanted("time_drift");
   if (!out.base_friction) {
     for (const Eigen::Index sign : out.friction)
       out.candidates.push_back({"coulomb", 0.0, {sign}, 1});

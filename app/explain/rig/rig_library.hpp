@@ -41,6 +41,8 @@ struct RigLibrary {
   Eigen::Index mass{0};
   bool base_offset{false};
   bool base_spring{false};
+  bool wants_skew{false};
+  bool wants_drift{false};
   std::vector<RigCandidate> candidates;
 
   Eigen::Index add(const RigColumn& column);

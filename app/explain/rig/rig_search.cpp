@@ -96,7 +96,7 @@ void RigSearch::backward() {
   for (std::size_t i = 0; chosen_.size() > 1 && i < chosen_.size();) {
     const double with = judge(chosen_columns()).fit.held_out_nmse;
     const Chosen removed = chosen_[i];
-    if (is_memory(removed.candidate.effect)) {
+    if (is_memory(removed.candidate.effect) || removed.candidate.columns.empty()) {
       ++i;
       continue;
     }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/explain/rig/rig_explanation.hpp"
 #include "app/explain/rig/rig_library.hpp"
+#include "app/explain/rig/rig_trials.hpp"
 #include "app/explain/rig/rig_twin.hpp"
 
 namespace dampline::app {
@@ -24,6 +26,7 @@ class RigSearch {
     RigStep step;
     double ridge{0.0};
     double other_memory{0.0};
+    double skew_s{0.0};  ///< of time_skew, which has no columns
   };
   struct Judged {
     RigFit fit;
@@ -36,6 +39,7 @@ class RigSearch {
     double gain{0.0};
     double t{0.0};
     RigFit fit;
+    bool needs_excess{false};  ///< over the floor, however sure it is
   };
 
   [[nodiscard]] ColumnSet set_of(const ColumnSet& more, std::size_t width) const;
@@ -51,6 +55,11 @@ class RigSearch {
   void prefer_beside_another(std::vector<Ranked>& order) const;
   void prefer_to_offset(std::vector<Ranked>& order) const;
   [[nodiscard]] std::string alike(const std::vector<Ranked>& order) const;
+  [[nodiscard]] RigTrialBase trial_base() const;
+  [[nodiscard]] std::optional<RigTrial> best_trial() const;
+  [[nodiscard]] bool is_better(const RigTrial& trial, const std::vector<Ranked>& order) const;
+  void take(const RigTrial& trial, double before);
+  void describe_drift(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
   bool forward();
   [[nodiscard]] static double other_memory_of(const std::vector<Ranked>& order);
   void rename_memory(Chosen& memory) const;
@@ -64,7 +73,7 @@ class RigSearch {
   void describe_sides(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
   void describe_steps(const Judged& now);
 
-  const std::vector<RigSeries>& records_;
+  std::vector<RigSeries> records_;
   RigScale scale_;
   RigLibrary library_;
   std::unique_ptr<RigEvidence> evidence_;

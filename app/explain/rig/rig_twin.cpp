@@ -26,8 +26,9 @@ double white_part(double noise, double step) {
 }
 
 bool is_sign(const RigColumn& column, const RigLaw& law) {
-  return std::any_of(law.friction.begin(), law.friction.end(),
-                     [&](const RigColumn& c) { return c.kind == column.kind && c.a == column.a; });
+  return std::any_of(law.friction.begin(), law.friction.end(), [&](const RigColumn& c) {
+    return c.kind == column.kind && c.a == column.a && column.time == c.time;
+  });
 }
 
 /// The measured deflection without what is faster than the derivative sees.
