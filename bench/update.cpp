@@ -129,7 +129,7 @@ void wavelet_row(benchmark::State& state) {
   for (std::int64_t n = 0; n < 2048; ++n) {
     const Motion m = source.next().result.motion;
     rows->set_accelerations(n, m.frame_mps2, m.relative_mps2);
-    rows->set_law(n, law(m.velocity_mps), false);
+    rows->set_law(n, law.lanes(m.velocity_mps), false);
   }
   const int half = rows->bank().half(scale);
   std::int64_t centre = 2046 - half;

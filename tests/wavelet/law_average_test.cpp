@@ -38,7 +38,8 @@ void for_each_average(const Check& check) {
   int seen = 0;
   for (int n = 0; n < 20; ++n) {
     const double t = n * kStepS;
-    const auto values = average.update(law_columns, kMotion.velocity(t), kMotion.accel(t), kStepS);
+    const LawColumns::Values values = LawColumns::values(
+        average.update(law_columns, kMotion.velocity(t), kMotion.accel(t), kStepS));
     EXPECT_EQ(average.complete(), n >= 2);
     if (!average.complete()) continue;
     check(t - kStepS, values);
@@ -49,7 +50,7 @@ void for_each_average(const Check& check) {
 
 TEST(LawAverage, IsTheHatAverageOverFourPointsASample) {
   for_each_average([](double t, const LawColumns::Values& values) {
-    EXPECT_LT((values - hat_average(t, 4)).cwiseAbs().maxCoeff(), 1e-14) << t;
+    EXPECT_LT((values - hat_average(t, 4)).cwiseAbs().maxCoeff(), 3e-7) << t;  // single precision
   });
 }
 
@@ -86,7 +87,7 @@ TEST(LawAverage, StartsCleanAfterAReset) {
     const auto b = fresh.update(law_columns, kMotion.velocity(t), kMotion.accel(t), kStepS);
     ASSERT_EQ(used.complete(), fresh.complete());
     if (fresh.complete()) {
-      EXPECT_EQ((a - b).cwiseAbs().maxCoeff(), 0.0) << n;
+      EXPECT_EQ((a - b).abs().maxCoeff(), 0.0F) << n;
     }
   }
 }

@@ -24,9 +24,9 @@ class RowBuilderOnNoise : public testing::Test {
     const auto n = static_cast<std::int64_t>(frame_.size());
     frame_.push_back(noise_(random_));
     relative_.push_back(noise_(random_));
-    LawColumns::Values law;
-    for (int i = 0; i < LawColumns::kCount; ++i) law[i] = noise_(random_);
-    law_.push_back(law);
+    LawColumns::Lanes law;
+    for (int i = 0; i < LawColumns::kLanes; ++i) law[i] = static_cast<float>(noise_(random_));
+    law_.push_back(LawColumns::values(law));
     still_.push_back(noise_(random_) > 0.8);
     builder_->set_accelerations(n, frame_.back(), relative_.back());
     builder_->set_law(n, law, still_.back());
@@ -90,7 +90,9 @@ TEST_F(RowBuilderOnNoise, GivesTheRowOfItsDefinitionAlsoAfterTheRingsWrapAround)
       const std::int64_t centre = n - builder_->bank().half(s) - 1;
       if (centre < builder_->bank().half(s) + 1) continue;
       const GalerkinRow difference = builder_->row(s, centre) - naive_row(s, centre);
-      ASSERT_LT(difference.cwiseAbs().maxCoeff(), 1e-12) << "scale " << s << " at " << centre;
+      ASSERT_LT(difference.tail<3>().cwiseAbs().maxCoeff(), 1e-12) << s << " at " << centre;
+      // A sum in single precision of numbers around 1.
+      ASSERT_LT(difference.head<LawColumns::kCount>().cwiseAbs().maxCoeff(), 2e-6) << s;
       ++rows;
     }
   }
@@ -107,7 +109,7 @@ TEST_F(RowBuilderOnNoise, WeighsStandstillByTheRow) {
 
 TEST_F(RowBuilderOnNoise, StandstillIsAllOrNothingWhereItIsAllOrNothing) {
   for (int n = 0; n < 1200; ++n) {
-    builder_->set_law(n, LawColumns::Values::Zero(), n >= 600);
+    builder_->set_law(n, LawColumns::Lanes::Zero(), n >= 600);
     if (n != 599 && n != 1199) continue;
     for (std::size_t s = 0; s < kScales; ++s) {
       const double share = builder_->still_share(s, n - builder_->bank().half(s));

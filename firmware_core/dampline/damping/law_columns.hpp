@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,41 +18,61 @@ inline constexpr std::array<double, kLawWidths> kLawWidthMps{
 
 /// Everything of the damping force that is not linear in the accelerations, as regressors over the
 /// relative velocity: smooth signs of each width, and the ramps of an odd broken line.
+///
+/// Calculated in single precision, four columns by one instruction: 1e-6 of a sign and 1e-7 of a
+/// velocity are a thousandth of what the sensors' noise leaves of them.
 class LawColumns {
  public:
   static constexpr int kCount = static_cast<int>(kLawWidths + kCurveSegments);
   using Values = Eigen::Matrix<double, kCount, 1>;
 
+  static constexpr int kSignLanes = 12;  ///< the signs, filled up to whole vectors of four
+  static constexpr int kLanes = kSignLanes + static_cast<int>(kCurveSegments);
+  static_assert(kSignLanes >= static_cast<int>(kLawWidths) && kLanes % 4 == 0);
+  /// The columns as they are stored; what lies between signs and ramps is zero.
+  using Lanes = Eigen::Array<float, kLanes, 1>;
+
   /// `nodes_mps`: right ends of the segments, increasing. The last segment goes on without end.
   explicit LawColumns(const std::array<double, kCurveSegments>& nodes_mps) noexcept {
     double left = 0.0;
     for (std::size_t i = 0; i < kCurveSegments; ++i) {
-      left_mps_[i] = left;
-      length_mps_[i] = i + 1 < kCurveSegments ? nodes_mps[i] - left : 1e3;
+      const double length = i + 1 < kCurveSegments ? nodes_mps[i] - left : 1e3;
+      left_mps_[static_cast<int>(i)] = static_cast<float>(left);
+      length_mps_[static_cast<int>(i)] = static_cast<float>(length);
       left = nodes_mps[i];
     }
-    for (std::size_t i = 0; i < kLawWidths; ++i) slope_[i] = kSignSlope / kLawWidthMps[i];
+    for (std::size_t i = 0; i < kLawWidths; ++i)
+      slope_[static_cast<int>(i)] = static_cast<float>(kSignSlope / kLawWidthMps[i]);
   }
 
-  /// Rows 0...9: erf(0.8862 v / w_i), no unit; rows 10...17: ramp_i(|v|) sign v, m/s.
-  [[nodiscard]] Values operator()(double velocity_mps) const noexcept {
-    Values out;
-    const double speed = std::abs(velocity_mps);
-    const double sign = std::copysign(1.0, velocity_mps);
-    for (std::size_t i = 0; i < kLawWidths; ++i) {
-      out[static_cast<int>(i)] = sign * erf_of_magnitude(slope_[i] * speed);
-    }
-    for (std::size_t i = 0; i < kCurveSegments; ++i) {
-      out[static_cast<int>(kLawWidths + i)] =
-          sign * std::min(std::max(speed - left_mps_[i], 0.0), length_mps_[i]);
-    }
+  /// Lanes 0...9: erf(0.8862 v / w_i), no unit; lanes 12...19: ramp_i(|v|) sign v, m/s.
+  [[nodiscard]] Lanes lanes(double velocity_mps) const noexcept {
+    const auto velocity = static_cast<float>(velocity_mps);
+    const float speed = std::abs(velocity);
+    const float sign = std::copysign(1.0F, velocity);
+    Lanes out;
+    out.head<kSignLanes>() = sign * erf_of_magnitudes<kSignLanes>(slope_ * speed);
+    out.tail<kRamps>() = sign * (speed - left_mps_).max(0.0F).min(length_mps_);
     return out;
   }
 
+  /// Rows 0...9: the signs; rows 10...17: the ramps.
+  [[nodiscard]] static Values values(const Lanes& lanes) noexcept {
+    Values out;
+    out.head<static_cast<int>(kLawWidths)>() =
+        lanes.head<static_cast<int>(kLawWidths)>().matrix().cast<double>();
+    out.tail<kRamps>() = lanes.tail<kRamps>().matrix().cast<double>();
+    return out;
+  }
+  [[nodiscard]] Values operator()(double velocity_mps) const noexcept {
+    return values(lanes(velocity_mps));
+  }
+
  private:
-  std::array<double, kLawWidths> slope_{};
-  std::array<double, kCurveSegments> left_mps_{};
-  std::array<double, kCurveSegments> length_mps_{};
+  static constexpr int kRamps = static_cast<int>(kCurveSegments);
+  Eigen::Array<float, kSignLanes, 1> slope_ = Eigen::Array<float, kSignLanes, 1>::Zero();
+  Eigen::Array<float, kRamps, 1> left_mps_;
+  Eigen::Array<float, kRamps, 1> length_mps_;
 };
 
 }  // namespace dampline

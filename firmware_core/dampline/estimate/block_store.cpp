@@ -6,6 +6,10 @@
 
 namespace dampline {
 
+namespace {
+constexpr std::size_t kWorthAPanel = 4;  // fewer rows cost less one by one
+}  // namespace
+
 void merge_step(ScaleFactors& into, const ScaleFactors& from, int cursor) noexcept {
   const auto scale = static_cast<std::size_t>(cursor / kRowColumns);
   into.factor[scale].absorb_row_of(from.factor[scale], cursor % kRowColumns);
@@ -34,9 +38,23 @@ BlockStore::BlockStore(const Config& config) noexcept : config_{config} {
 }
 
 void BlockStore::absorb(std::int64_t block, std::size_t scale, const GalerkinRow& row) noexcept {
-  ScaleFactors& open = open_[slot(block)];
-  open.factor[scale].absorb(row);
-  open.rows[scale] += 1.0;
+  Panel& panel = panels_[scale];
+  if (panel.count == kPanel || panel.slot != slot(block)) absorb_panel(scale);
+  panel.slot = slot(block);
+  panel.rows[panel.count++] = row;
+  open_[panel.slot].rows[scale] += 1.0;
+}
+
+void BlockStore::absorb_panel(std::size_t scale) noexcept {
+  Panel& panel = panels_[scale];
+  RowFactor& factor = open_[panel.slot].factor[scale];
+  if (panel.count < kWorthAPanel) {
+    for (std::size_t i = 0; i < panel.count; ++i) factor.absorb(panel.rows[i]);
+  } else {
+    for (std::size_t i = panel.count; i < kPanel; ++i) panel.rows[i].setZero();
+    factor.absorb_panel(panel.rows);
+  }
+  panel.count = 0;
 }
 
 double BlockStore::rows(std::int64_t block) const noexcept {
@@ -92,6 +110,10 @@ void BlockStore::advance() noexcept {
   }
   ScaleFactors& from = open_[pending_[0]];
   ScaleFactors& into = phase_ == Phase::kIntoEntry ? entry(count_ - 1) : total_;
+  if (cursor_ % kRowColumns == 0) {  // one scale's last rows at a time, when its factor is needed
+    const auto scale = static_cast<std::size_t>(cursor_ / kRowColumns);
+    if (panels_[scale].slot == pending_[0]) absorb_panel(scale);
+  }
   merge_step(into, from, cursor_);
   if (++cursor_ < kRowsOfBlock) return;
   cursor_ = 0;

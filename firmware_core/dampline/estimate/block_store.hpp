@@ -30,8 +30,8 @@ class BlockStore {
 
   explicit BlockStore(const Config& config) noexcept;
 
-  /// Adds a row to open block `block`. At most three consecutive blocks are open or
-  /// being merged.
+  /// Adds a row to open block `block`. At most three consecutive blocks are open or being merged,
+  /// and of one scale rows come block after block. Rows are gathered to panels of kPanel.
   void absorb(std::int64_t block, std::size_t scale, const GalerkinRow& row) noexcept;
   /// Rows of an open block so far, all scales.
   [[nodiscard]] double rows(std::int64_t block) const noexcept;
@@ -55,6 +55,13 @@ class BlockStore {
  private:
   enum class Phase : std::uint8_t { kIdle, kCompact, kIntoEntry, kIntoTotal };
   static constexpr std::size_t kSlots = 3;
+  static constexpr std::size_t kPanel = 8;
+  /// Rows of one scale and block that are not yet in the block's factor.
+  struct Panel {
+    std::array<GalerkinRow, kPanel> rows{};
+    std::size_t count{0};
+    std::size_t slot{0};
+  };
   static constexpr int kRowsOfBlock = static_cast<int>(kScales) * kRowColumns;
   static constexpr int kPairs = static_cast<int>(kEntries / 2);
 
@@ -64,6 +71,7 @@ class BlockStore {
   [[nodiscard]] ScaleFactors& entry(std::size_t i) noexcept {
     return entries_[(head_ + i) % kEntries];
   }
+  void absorb_panel(std::size_t scale) noexcept;
   void start() noexcept;
   void open_entry() noexcept;
   void advance() noexcept;
@@ -72,6 +80,7 @@ class BlockStore {
   std::uint32_t blocks_per_entry_{1};
   std::size_t limit_{kEntries};  // entries in use at most
   std::array<ScaleFactors, kSlots> open_{};
+  std::array<Panel, kScales> panels_{};
   std::array<ScaleFactors, kEntries> entries_{};
   std::size_t head_{0};
   std::size_t count_{0};

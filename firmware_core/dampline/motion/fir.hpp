@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "dampline/motion/sliding_window.hpp"
+
 namespace dampline {
 
 /// Finite impulse response of 2 Half + 1 taps around the centre; the output is Half samples late.
@@ -13,24 +15,23 @@ class Fir {
   static constexpr std::size_t kTaps = 2 * Half + 1;
 
   /// Tap k of -Half...Half weighs the sample k before the centre.
-  explicit Fir(const std::array<double, kTaps>& taps) noexcept : taps_{taps} {}
+  explicit Fir(const std::array<double, kTaps>& taps) noexcept {
+    for (std::size_t i = 0; i < kTaps; ++i) taps_[i] = taps[kTaps - 1 - i];
+  }
 
   /// Takes x_n. True when `out` was set to the filtered x_(n-Half).
   bool update(double x, double& out) noexcept {
-    for (std::size_t i = kTaps - 1; i > 0; --i) x_[i] = x_[i - 1];
-    x_[0] = x;
+    window_.push(x);
     if (seen_ < kTaps && ++seen_ < kTaps) return false;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < kTaps; ++i) sum += taps_[i] * x_[i];
-    out = sum;
+    out = window_.dot(taps_);
     return true;
   }
 
   void reset() noexcept { seen_ = 0; }
 
  private:
-  std::array<double, kTaps> taps_;
-  std::array<double, kTaps> x_{};
+  std::array<double, kTaps> taps_{};  // of the oldest value first
+  SlidingWindow<kTaps> window_{};
   std::size_t seen_{0};
 };
 

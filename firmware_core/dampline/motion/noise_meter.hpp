@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/motion/sliding_window.hpp"
+
 namespace dampline {
 
 /// White noise of a signal from the band above 0.43 of its sampling rate (130 Hz at 300 Hz), which
@@ -28,12 +30,9 @@ class NoiseMeter {
   }
 
   void update(double x) noexcept {
-    for (std::size_t i = 0; i + 1 < kTaps; ++i) x_[i] = x_[i + 1];
-    x_[kTaps - 1] = x;
+    window_.push(x);
     if (++since_reset_ < static_cast<std::int64_t>(kTaps)) return;
-    double y = 0.0;
-    for (std::size_t i = 0; i < kTaps; ++i) y += taps_[i] * x_[i];
-    follow(std::abs(y));
+    follow(std::abs(window_.dot(taps_)));
     ++count_;
   }
 
@@ -62,7 +61,7 @@ class NoiseMeter {
   static constexpr double kWidth = 0.05;  // half-width of the pass band, of the sampling rate
   static constexpr std::size_t kTaps = 2 * kHalf + 1;
   std::array<double, kTaps> taps_{};
-  std::array<double, kTaps> x_{};
+  SlidingWindow<kTaps> window_{};
   double gain_{1.0};
   double quantile_{0.0};
   std::int64_t count_{0};

@@ -14,6 +14,9 @@ constexpr std::size_t slot_of(std::int64_t tick) noexcept {
 
 ChannelLane::ChannelLane(const ChannelConfig& config, double rate_hz) noexcept
     : config_{config},
+      accel_{config.accel},
+      counter_{config.has_counter ? config.counter : config.accel},
+      multiplexor_{config.multiplexed ? config.multiplexor : config.accel},
       full_scale_{full_scale_of(config.accel)},
       rate_hz_{rate_hz},
       by_counter_{config.has_counter ? config.counter.length : 1U, rate_hz},
@@ -35,23 +38,24 @@ void ChannelLane::restart(std::int64_t first_tick) noexcept {
 
 bool ChannelLane::decode(const CanFrame& frame, Reading& reading, std::uint64_t& counter) noexcept {
   if (config_.multiplexed) {
-    const Result<std::uint64_t> which = extract_bits(config_.multiplexor, frame);
-    if (!which.ok()) ++counts_.wrong_length;
-    if (!which.ok()) return false;
-    if (which.value() != config_.multiplexor_value) ++counts_.other_page;
-    if (which.value() != config_.multiplexor_value) return false;
+    if (!multiplexor_.fits(frame)) {
+      ++counts_.wrong_length;
+      return false;
+    }
+    if (multiplexor_.bits(frame) != config_.multiplexor_value) {
+      ++counts_.other_page;
+      return false;
+    }
   }
-  const Result<std::int64_t> raw = extract_raw(config_.accel, frame);
-  const Result<std::uint64_t> count = config_.has_counter ? extract_bits(config_.counter, frame)
-                                                          : Result<std::uint64_t>{std::uint64_t{0}};
-  if (!raw.ok() || !count.ok()) {
+  if (!accel_.fits(frame) || (config_.has_counter && !counter_.fits(frame))) {
     ++counts_.wrong_length;
     return false;
   }
+  const std::int64_t raw = accel_.raw(frame);
   reading.time_ns = frame.time_ns;
-  reading.accel_mps2 = to_physical(config_.accel, raw.value());
-  reading.saturated = full_scale_.reached(raw.value());
-  counter = count.value();
+  reading.accel_mps2 = accel_.physical(raw);
+  reading.saturated = full_scale_.reached(raw);
+  if (config_.has_counter) counter = counter_.bits(frame);
   return true;
 }
 

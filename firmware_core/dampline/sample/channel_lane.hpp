@@ -72,6 +72,9 @@ class ChannelLane {
   void store_late(const Reading& reading) noexcept;
 
   ChannelConfig config_;
+  SignalReader accel_;
+  SignalReader counter_;
+  SignalReader multiplexor_;
   FullScale full_scale_;
   double rate_hz_;
   CounterSequence by_counter_;

@@ -120,4 +120,55 @@ struct SignalBytes {
   return to_physical(signal, raw.value());
 }
 
+/// The functions above for one signal of many frames: what they work out of the layout is worked
+/// out once.
+class SignalReader {
+ public:
+  /// Precondition: is_valid(signal).
+  explicit constexpr SignalReader(const SignalLayout& signal) noexcept
+      : signal_{signal},
+        needed_{bytes_needed(signal)},
+        first_{signal.start_bit / 8U},
+        unused_{64U - signal.length} {
+    const unsigned bit = signal.start_bit % 8U;
+    const bool intel = signal.order == ByteOrder::kIntel;
+    const unsigned before = intel ? bit : 7U - bit;
+    is_word_ = before <= unused_ && first_ + 8U <= CanFrame{}.data.size();
+    if (is_word_) left_ = intel ? unused_ - before : before;
+  }
+
+  /// The frame is long enough.
+  [[nodiscard]] constexpr bool fits(const CanFrame& frame) const noexcept {
+    return needed_ <= frame.length;
+  }
+  /// As extract_bits() and extract_raw(). Precondition: fits(frame).
+  [[nodiscard]] constexpr std::uint64_t bits(const CanFrame& frame) const noexcept {
+    if (!is_word_) return gather_bits(signal_, frame) << unused_ >> unused_;
+    return top(frame) >> unused_;
+  }
+  [[nodiscard]] constexpr std::int64_t raw(const CanFrame& frame) const noexcept {
+    const std::uint64_t top_aligned =
+        is_word_ ? top(frame) : gather_bits(signal_, frame) << unused_;
+    if (signal_.is_signed) return static_cast<std::int64_t>(top_aligned) >> unused_;
+    return static_cast<std::int64_t>(top_aligned >> unused_);
+  }
+  [[nodiscard]] constexpr double physical(std::int64_t raw) const noexcept {
+    return to_physical(signal_, raw);
+  }
+
+ private:
+  /// The signal's bits at the top of a word.
+  [[nodiscard]] constexpr std::uint64_t top(const CanFrame& frame) const noexcept {
+    const std::uint8_t* const bytes = frame.data.data() + first_;
+    return (signal_.order == ByteOrder::kIntel ? intel_word(bytes) : motorola_word(bytes)) << left_;
+  }
+
+  SignalLayout signal_;
+  int needed_;
+  unsigned first_;
+  unsigned unused_;
+  unsigned left_{0};
+  bool is_word_{false};  // eight bytes in a row hold it whole
+};
+
 }  // namespace dampline

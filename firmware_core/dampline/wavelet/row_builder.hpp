@@ -31,20 +31,22 @@ class RowBuilder {
   }
 
   /// The law's columns at sample n, and whether the truck stood still then.
-  void set_law(std::int64_t n, const LawColumns::Values& values, bool still) noexcept {
+  void set_law(std::int64_t n, const LawColumns::Lanes& values, bool still) noexcept {
     law_[law(n)] = values;
     still_[law(n)] = still ? 1.0F : 0.0F;
     if (still) newest_still_ = n;
   }
 
   /// The row of a scale centred on sample n. Needs the law at n - half...n + half and
-  /// the accelerations at n - half - 1...n + half + 1. Cost: (2 half + 1) (kRowColumns - 1)
-  /// multiplications.
+  /// the accelerations at n - half - 1...n + half + 1. Cost: half (kLanes + 6) multiplications. The
+  /// law's columns are sums in single precision: 1e-6 of a column's norm.
   [[nodiscard]] GalerkinRow row(std::size_t scale, std::int64_t n) const noexcept;
   /// Share of the row's weight that lies on samples at a standstill, 0...1.
   [[nodiscard]] double still_share(std::size_t scale, std::int64_t n) const noexcept;
 
  private:
+  /// The law's columns, by pairs of samples at equal distance from the centre: psi is even.
+  [[nodiscard]] LawColumns::Lanes law_columns(std::size_t scale, std::int64_t n) const noexcept;
   /// Stiffness, viscous, target.
   [[nodiscard]] Eigen::Vector3d linear_columns(std::size_t scale, std::int64_t n) const noexcept;
 
@@ -58,7 +60,7 @@ class RowBuilder {
   WindowBank bank_;
   std::array<double, kRawRing> frame_mps2_{};
   std::array<double, kRawRing> relative_mps2_{};
-  std::array<LawColumns::Values, kLawRing> law_{};
+  std::array<LawColumns::Lanes, kLawRing> law_{};
   std::array<float, kLawRing> still_{};
   std::int64_t newest_still_{-1};  // of an earlier stretch perhaps; then too large at worst
 };
