@@ -180,6 +180,25 @@ TEST(Guard, NamesSamplesLostOrRepeatedInAllChannels) {
               Names{"repeated_samples all"});
 }
 
+// A tenth of the wheelsets' power is not shared.
+TEST(Guard, NamesSamplesLostInAllChannelsWhereWheelsetsDiffer) {
+  const auto with = [](int lost) {
+    return run([lost](Trial& s) {
+      s.simulation = sim::reference_run(sim::Load::kLaden, 80.0, 2);
+      s.simulation.incoherent_power = 0.1;
+      s.faults.lost_everywhere = lost;
+    });
+  };
+  const auto guard = with(2);
+  const Fault& fault = only(*guard);
+  EXPECT_STREQ(name_of(fault.kind), "lost_samples");
+  EXPECT_EQ(fault.channel, FaultChannel::kAll);
+  EXPECT_EQ(fault.size, 2.0);
+  EXPECT_NEAR(fault.time_s, 80.0, 0.1);
+  EXPECT_NE(guard->spoilt(80 * 300, 80 * 300) & 1U << static_cast<unsigned>(fault.kind), 0U);
+  EXPECT_THAT(names(*with(0)), IsEmpty());
+}
+
 TEST(Guard, NamesExchangedAndInvertedSensors) {
   EXPECT_THAT(names(*run([](Trial& s) {
                 s.simulation.sensors.range_mps2.fill(98.0665);

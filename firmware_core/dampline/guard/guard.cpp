@@ -75,6 +75,7 @@ void Guard::update(const Sample& sample) noexcept {
     spectral_.set_change_scale(c, spikes_[c].scale() * unit(c));
   }
   spectral_.advance(book_, inputs_);
+  if (!spectral_.knows_delay() || wheelsets_.differs_from(spectral_.delay_s())) wheelsets_.doubt();
   wheelsets_.update(sample.tick, sample.accel_mps2[1], sample.accel_mps2[2], book_);
   spectral_.set_jump(wheelsets_.jump_tick());
   take_strikes();

@@ -39,6 +39,8 @@ class SpectralGuard {
   void restart() noexcept;
   /// True once the delay of wheelset 2 is known, in seconds.
   [[nodiscard]] bool has_delay() const noexcept { return has_delay_; }
+  /// The newest block tells the delay.
+  [[nodiscard]] bool knows_delay() const noexcept { return usable_; }
   /// The delay is what it was a block before.
   [[nodiscard]] bool steady() const noexcept { return steady_; }
   [[nodiscard]] double delay_s() const noexcept { return delay_s_; }

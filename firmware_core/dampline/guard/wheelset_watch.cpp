@@ -14,19 +14,20 @@ constexpr double kSmoothingS = 10.0;      // of mean and power
 constexpr double kSlipRise = 25.0;        // of the squared difference over its median
 constexpr double kSlipMatch = 0.15;       // what is left of it one sample off
 constexpr double kWholeSlip = 0.03;       // where it is by whole samples exactly
-constexpr double kAlike = 0.01;           // of the power: beyond it no slip can be seen
+constexpr double kAlike = 0.01;           // of the power: beyond it slips are found otherwise
 constexpr double kMoved = 0.2;            // samples: the delay is another
+constexpr double kDoubt = 0.08;           // samples; a slip moves the delay of its block by 0.03
 constexpr std::int64_t kAtOnce = 6;       // chunks within which a jump is complete
 constexpr std::size_t kNewest = 8;        // blocks
 constexpr std::int64_t kQuietTicks = 40;  // on either side of an impact
 constexpr double kTogether = 6.0;         // of the squared difference over its median
-constexpr double kStrikesKnownS = 5.0;    // by then all impacts of that time are known
-constexpr std::size_t kTooMany = 5;       // slips within kStrikesKnownS: rather wheel flats
+constexpr double kSettledS = 11.7;        // by then impacts and delay of that time are known
+constexpr std::size_t kTooMany = 5;       // slips within kSettledS: rather wheel flats
 constexpr double kOutlierShare = 0.02;
 constexpr std::uint32_t kEnoughChunks = 300;
 constexpr double kUnitMps2 = 1e-3;
 constexpr double kOutlier = 12.0;  // of the squared difference: not for the regression
-constexpr std::size_t kNone = 4;   // the shift that is none
+constexpr std::size_t kNone = ShiftSums::kNone;
 constexpr std::size_t kCubicBlocks = 6;
 constexpr double kLeastCubic = 2e-3;  // clean records reach 1e-4
 constexpr double kCubicSignificant = 5.0;
@@ -41,6 +42,7 @@ void WheelsetWatch::restart() noexcept {
   has_delay_ = false;
   chunk_samples_ = 0;
   last_error_ = {};
+  finder_.restart();
   apart_ = too_long_ = false;
   for (BlockSeries& series : cubic_) series.clear();
 }
@@ -68,6 +70,10 @@ void WheelsetWatch::set_delay(double delay_s) noexcept {
   has_delay_ = true;
 }
 
+bool WheelsetWatch::differs_from(double delay_s) const noexcept {
+  return std::abs(delay_s * rate_hz_ - delay_samples_) > kDoubt;
+}
+
 void WheelsetWatch::update(std::int64_t tick, double wheelset1_mps2, double wheelset2_mps2,
                            FaultBook& book) noexcept {
   const double share = 1.0 / (kSmoothingS * rate_hz_);
@@ -82,7 +88,8 @@ void WheelsetWatch::update(std::int64_t tick, double wheelset1_mps2, double whee
   ++count_;
   if (!has_delay_ || count_ < 2 * kBehind) return;
   compare(tick - kBehind);
-  if (++chunk_samples_ != kChunk) return;
+  if (++chunk_samples_ % ShiftSums::kSamples == 0) find_slip();
+  if (chunk_samples_ != kChunk) return;
   end_chunk();
   report_slips(tick, book);
 }
@@ -117,12 +124,13 @@ void WheelsetWatch::compare(std::int64_t tick) noexcept {
   ring(delayed_, n) = delayed;
   const std::int64_t m = n - kReach;
   const double two = ring(two_, m);
+  const double one = ring(delayed_, m);
   for (std::size_t s = 0; s < kShifts; ++s) {
-    const double e = two - ring(delayed_, m - kReach + static_cast<std::int64_t>(s));
-    error_[s] += e * e;
+    const double shifted = ring(delayed_, m - kReach + static_cast<std::int64_t>(s));
+    sums_.error[s] += (two - shifted) * (two - shifted);
+    sums_.change[s] += (one - shifted) * (one - shifted);
   }
   chunk_tick_ = tick - kReach;
-  const double one = ring(delayed_, m);
   const auto cubic = [](double x, double power) { return x * x * x / power - 3.0 * x; };
   chunk_[0].add(one, cubic(one, square_[0] + 1e-12), two);
   chunk_[1].add(two, cubic(two, square_[1] + 1e-12), one);
@@ -131,6 +139,7 @@ void WheelsetWatch::compare(std::int64_t tick) noexcept {
 void WheelsetWatch::end_chunk() noexcept {
   const double mean_square = error_[kNone] / static_cast<double>(kChunk);
   const double usual = usual_.median() * kUnitMps2 * kUnitMps2;
+  usual_square_ = usual_.count() > kEnoughChunks ? usual : 0.0;
   const auto size =
       static_cast<std::uint64_t>(std::min(mean_square, 1e6) / (kUnitMps2 * kUnitMps2));
   usual_.add(size);
@@ -181,6 +190,17 @@ void WheelsetWatch::follow_slip() noexcept {
   }
 }
 
+// Where the wheelsets differ too much for follow_slip().
+void WheelsetWatch::find_slip() noexcept {
+  for (std::size_t s = 0; s < kShifts; ++s) error_[s] += sums_.error[s];
+  Slip slip;
+  const bool found =
+      finder_.update(chunk_tick_, sums_, std::abs(whole_), std::sqrt(usual_square_), slip);
+  sums_ = {};
+  if (!found || usual_square_ < kAlike * square_[1] || slip_count_ == slips_.size()) return;
+  slips_[slip_count_++] = slip;
+}
+
 bool WheelsetWatch::struck(const Slip& slip, std::int64_t tick) const noexcept {
   return std::abs(slip.tick - tick) < kQuietTicks + std::abs(whole_);
 }
@@ -198,7 +218,7 @@ void WheelsetWatch::report_slips(std::int64_t tick, FaultBook& book) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < slip_count_; ++i) {
     const Slip slip = slips_[i];
-    if (static_cast<double>(tick - slip.tick) < kStrikesKnownS * rate_hz_) {
+    if (static_cast<double>(tick - slip.tick) < kSettledS * rate_hz_) {
       slips_[kept++] = slip;
       continue;
     }

@@ -7,6 +7,7 @@
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/fault_book.hpp"
 #include "dampline/guard/log_histogram.hpp"
+#include "dampline/guard/slip_finder.hpp"
 
 namespace dampline {
 
@@ -30,6 +31,10 @@ class WheelsetWatch {
   /// An impact or wrong sample at this tick; may come some seconds late.
   void strike(std::int64_t tick) noexcept;
   void restart() noexcept;
+  /// The delay of wheelset 2 is another than that set.
+  [[nodiscard]] bool differs_from(double delay_s) const noexcept;
+  /// The delay changed or is not known: what looked like a slip lately was none.
+  void doubt() noexcept { slip_count_ = 0; }
   /// Root of the median of the squared difference of the wheelsets, of the newest blocks.
   [[nodiscard]] double difference_mps2() const noexcept;
   /// Where they last moved apart by whole samples at once and stayed so; -1: never.
@@ -38,22 +43,20 @@ class WheelsetWatch {
  private:
   static constexpr std::size_t kRing = 512;
   static constexpr int kHalf = 12;  // taps on either side
-  static constexpr std::int64_t kChunk = 8;
-  static constexpr int kReach = 4;  // samples; slips of one less are recognised
-  static constexpr std::size_t kShifts = 2 * std::size_t{kReach} + 1;
+  static constexpr std::int64_t kChunk = 2 * ShiftSums::kSamples;
+  static constexpr int kReach = ShiftSums::kReach;  // slips of one sample less are recognised
+  static constexpr std::size_t kShifts = ShiftSums::kShifts;
   struct Direction {  // y on {x, c}
     double xx{0.0}, xc{0.0}, cc{0.0}, xy{0.0}, cy{0.0};
     void add(double x, double c, double y) noexcept;
     void add(const Direction& other) noexcept;
     [[nodiscard]] double cubic() const noexcept;  // coefficient of c over that of x
   };
-  struct Slip {
-    std::int64_t tick{0};
-    int samples{0};  // lost; negative: repeated
-  };
+  using Slip = SlipFinder::Slip;
   void compare(std::int64_t tick) noexcept;
   void end_chunk() noexcept;
   void follow_slip() noexcept;
+  void find_slip() noexcept;
   [[nodiscard]] bool struck(const Slip& slip, std::int64_t tick) const noexcept;
   void report_slips(std::int64_t tick, FaultBook& book) noexcept;
   void judge_saturation(std::int64_t tick, FaultBook& book) noexcept;
@@ -73,9 +76,12 @@ class WheelsetWatch {
   std::array<double, 2> square_{};  // smoothed x^2
   std::int64_t chunk_samples_{0};
   std::int64_t chunk_tick_{0};
+  ShiftSums sums_{};                          // of half a chunk
   std::array<double, kShifts> error_{};       // of this chunk, by shift
   std::array<double, kShifts> last_error_{};  // of the chunk before
   MagnitudeHistogram usual_;                  // mean squared error of chunks, in (mm/s^2)^2
+  double usual_square_{0.0};                  // of the difference, mean; 0: not known yet
+  SlipFinder finder_{};
   bool apart_{false};       // the wheelsets stand some whole samples apart just now
   bool too_long_{false};    // and longer than a slip does
   bool whole_slip_{false};  // by whole samples exactly
