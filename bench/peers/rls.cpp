@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Recursive least squares by the project and by other libraries: the same rows, time per row, and
-// whether the answer is the same. `peers_rls [--json FILE]`; see bench/README.md.
+// whether the answer is the same. `peers_rls [--json FILE] [--rows FILE]`: --rows writes 32
+// unknowns' rows and answer for least_squares.py; see bench/README.md.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -114,6 +115,25 @@ void write_json(const Results& results, const std::string& path) {
   std::ofstream{path} << out.dump(2) << '\n';
 }
 
+/// Rows [x, y] and then the project's answer, as doubles.
+void write_rows(const std::string& path) {
+  constexpr int kUnknowns = 32;
+  const Problem<kUnknowns> problem{kRows};
+  Ours<kUnknowns> estimator{1.0};
+  std::ofstream file{path, std::ios::binary};
+  const auto put = [&file](const double* first, std::size_t count) {
+    file.write(reinterpret_cast<const char*>(first),
+               static_cast<std::streamsize>(count * sizeof(double)));
+  };
+  for (std::size_t i = 0; i < kRows; ++i) {
+    estimator.absorb(problem.x[i], problem.y[i]);
+    put(problem.x[i].data(), kUnknowns);
+    put(&problem.y[i], 1);
+  }
+  const Column<kUnknowns> answer = estimator.answer();
+  put(answer.data(), kUnknowns);
+}
+
 int run(int argc, char** argv) {
   Results results;
   Race<8>{results}.run();
@@ -121,7 +141,11 @@ int run(int argc, char** argv) {
   Race<32>{results}.run();
   const bool same = print(results);
   std::fputs(missing_peers(), stdout);
-  if (argc == 3 && std::string_view{argv[1]} == "--json") write_json(results, argv[2]);
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view option = argv[i];
+    if (option == "--json") write_json(results, argv[i + 1]);
+    if (option == "--rows") write_rows(argv[i + 1]);
+  }
   return same ? 0 : 1;
 }
 
