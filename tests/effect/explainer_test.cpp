@@ -92,6 +92,27 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string{name_of(tested.param.effect)};
     });
 
+TEST(Explainer, AFramesSensorThatShowsTooMuchStretchesNoForce) {
+  const Explanation e = explained("gain_error:wheelset1=0,frame=0.05", 76).explanation;
+  ASSERT_EQ(e.step_count, 1U);
+  EXPECT_STREQ(e.step[0].parameter[0].name, "gain_error_frame");
+  EXPECT_NEAR(e.step[0].parameter[0].estimate.value, 0.05, 0.006);
+  EXPECT_GT(e.base_coulomb_n.value, 1.03 * 8356.0);
+  EXPECT_NEAR(e.final_coulomb_n.value, 8356.0, 0.015 * 8356.0);
+  EXPECT_NEAR(e.final_stiffness_npm.value, 5.26e6, 0.03 * 5.26e6);
+}
+
+TEST(Explainer, PitchHidesNoFrictionOnceItIsNamed) {
+  const Explanation e = explained("unmodelled_mode", 77).explanation;
+  ASSERT_EQ(e.step_count, 1U);
+  EXPECT_EQ(e.step[0].chosen.effect, Effect::kUnmodelledMode);
+  EXPECT_EQ(e.step[0].chosen.form, kPitchForm);
+  EXPECT_NEAR(e.step[0].parameter[0].estimate.value, 12.0, 1.0);  // Hz: 2 k a^2 / I
+  EXPECT_LT(e.base_coulomb_n.value, 0.95 * 8356.0);
+  EXPECT_NEAR(e.final_coulomb_n.value, 8356.0, 0.02 * 8356.0);
+  EXPECT_NEAR(e.final_stiffness_npm.value, 5.26e6, 0.03 * 5.26e6);
+}
+
 TEST(Explainer, ACleanRecordIsComplete) {
   for (const std::uint64_t seed : {72U, 73U}) {
     const Explanation e = explained("", seed).explanation;

@@ -78,26 +78,30 @@ void add_modes(CandidateList& out) noexcept {
 /// With x_true(t) = x(t + tau), or x_true = x (1 - e), to first order:
 ///   frame:    -a = k y + F(v) + tau (a' + 2 k z_b') + ...
 ///   wheelset: -a = k y + F(v) - tau (k z_i' + F'(v) z_i'')
-/// A gain of the frame's sensor stretches k and F too, so only what it does to y and v is a column.
-/// and for gains with the tangent of the friction law, since signs change where |v| is small.
+/// A gain of the frame's sensor stretches k and F too, so only what it does to y and v is a column;
+/// gains have the tangent of the friction law, since signs change where |v| is small.
+Regressor skew_regressor(const BaseForce& base, std::uint8_t form) noexcept {
+  if (form == kFrameForm) return Regressor::of(kFrameRate).plus(kFrameOnce, 2.0 * base.stiffness);
+  const bool first = form == kWheelset1Form;
+  return Regressor::of(first ? kWheelset1Once : kWheelset2Once, -base.stiffness)
+      .plus(first ? kTangentRate1 : kTangentRate2, -base.coulomb);
+}
+Regressor gain_regressor(const BaseForce& base, std::uint8_t form) noexcept {
+  if (form == kFrameForm) {
+    return Regressor::of(kFrameTwice, -2.0 * base.stiffness)
+        .plus(kTangentV, -base.coulomb)
+        .plus(kTangent1, -base.coulomb)
+        .plus(kTangent2, -base.coulomb);
+  }
+  const bool first = form == kWheelset1Form;
+  return Regressor::of(first ? kWheelset1Twice : kWheelset2Twice, base.stiffness)
+      .plus(first ? kTangent1 : kTangent2, base.coulomb);
+}
 void add_sensors(const BaseForce& base, CandidateList& out) noexcept {
-  const double k = base.stiffness;
-  const double f = base.coulomb;
-  add(out, Effect::kTimeSkew, 0, kFrameForm, 0,
-      Regressor::of(kFrameRate).plus(kFrameOnce, 2.0 * k));
-  add(out, Effect::kTimeSkew, 0, kWheelset1Form, 0,
-      Regressor::of(kWheelset1Once, -k).plus(kTangentRate1, -f));
-  add(out, Effect::kTimeSkew, 0, kWheelset2Form, 0,
-      Regressor::of(kWheelset2Once, -k).plus(kTangentRate2, -f));
-  add(out, Effect::kGainError, 0, kFrameForm, 0,
-      Regressor::of(kFrameTwice, -2.0 * k)
-          .plus(kTangentV, -f)
-          .plus(kTangent1, -f)
-          .plus(kTangent2, -f));
-  add(out, Effect::kGainError, 0, kWheelset1Form, 0,
-      Regressor::of(kWheelset1Twice, k).plus(kTangent1, f));
-  add(out, Effect::kGainError, 0, kWheelset2Form, 0,
-      Regressor::of(kWheelset2Twice, k).plus(kTangent2, f));
+  for (const std::uint8_t form : {kFrameForm, kWheelset1Form, kWheelset2Form}) {
+    add(out, Effect::kTimeSkew, 0, form, 0, skew_regressor(base, form));
+    add(out, Effect::kGainError, 0, form, 0, gain_regressor(base, form));
+  }
 }
 
 }  // namespace
@@ -127,6 +131,13 @@ Regressor stiffness_regressor() noexcept {
 }
 Regressor viscous_regressor() noexcept {
   return Regressor::of(kFrameOnce, 2.0).plus(kWheelset1Once, -1.0).plus(kWheelset2Once, -1.0);
+}
+
+void refresh(const BaseForce& base, Candidate& candidate) noexcept {
+  if (candidate.effect == Effect::kTimeSkew)
+    candidate.regressor[0] = skew_regressor(base, candidate.form);
+  if (candidate.effect == Effect::kGainError)
+    candidate.regressor[0] = gain_regressor(base, candidate.form);
 }
 
 void list_candidates(const BaseForce& base, CandidateList& out) noexcept {

@@ -67,6 +67,10 @@ struct CandidateList {
 /// The library of effects, every point of every grid.
 void list_candidates(const BaseForce& base, CandidateList& out) noexcept;
 
+/// The candidates of a model that need the base force, with what is known of it now: channels that
+/// are late or wrongly scaled.
+void refresh(const BaseForce& base, Candidate& candidate) noexcept;
+
 /// y and v as regressors.
 [[nodiscard]] Regressor stiffness_regressor() noexcept;
 [[nodiscard]] Regressor viscous_regressor() noexcept;

@@ -29,21 +29,22 @@ inline constexpr std::array<double, kDahlDistances> kDahlDistance{0.05, 0.08, 0.
                                                                   0.32, 0.5,  0.8,   1.25};
 inline constexpr std::array<double, kBacklashGaps> kBacklashGap{0.1, 0.15, 0.22, 0.33,
                                                                 0.5, 0.75, 1.1,  1.7};
-struct ModeShape {
+struct PitchShape {
   double frequency_hz;
-  double damping_ratio;
+  double slip_m;  ///< F / (2 k): how far the spring must turn before friction yields
 };
-/// The frame's pitch; friction damps it beyond the critical.
+/// The frame's pitch on spring and friction of both wheelsets.
+inline constexpr double kPitchDamping = 0.02;
 inline constexpr std::size_t kPitchFrequencies = 3;
-inline constexpr std::array<ModeShape, kPitchModes> kPitch{{{7.5, 0.4},
-                                                            {12.0, 0.4},
-                                                            {19.0, 0.4},
-                                                            {7.5, 0.9},
-                                                            {12.0, 0.9},
-                                                            {19.0, 0.9},
-                                                            {7.5, 1.8},
-                                                            {12.0, 1.8},
-                                                            {19.0, 1.8}}};
+inline constexpr std::array<PitchShape, kPitchModes> kPitch{{{7.5, 0.4e-3},
+                                                             {12.0, 0.4e-3},
+                                                             {19.0, 0.4e-3},
+                                                             {7.5, 0.8e-3},
+                                                             {12.0, 0.8e-3},
+                                                             {19.0, 0.8e-3},
+                                                             {7.5, 1.6e-3},
+                                                             {12.0, 1.6e-3},
+                                                             {19.0, 1.6e-3}}};
 /// A mass on the frame, on a spring.
 inline constexpr double kFlexibleDamping = 0.04;
 inline constexpr std::array<double, kFlexibleModes> kFlexibleHz{

@@ -26,9 +26,6 @@ Diagnosis::Diagnosis(const IdentifierConfig& config, double scale_m) noexcept
       mean_{scale_m > 0.0 ? scale_m : kStartScaleM, 1.0 / config.sample_rate_hz},
       scale_known_{scale_m > 0.0} {
   const double step_s = 1.0 / sample_rate_hz_;
-  for (std::size_t i = 0; i < kPitchModes; ++i) {
-    pitch_[i] = Resonator{kPitch[i].frequency_hz, kPitch[i].damping_ratio, step_s};
-  }
   for (std::size_t i = 0; i < kFlexibleModes; ++i) {
     flexible_[i] = Resonator{kFlexibleHz[i], kFlexibleDamping, step_s};
   }
@@ -55,7 +52,6 @@ bool Diagnosis::learn(const Motion& motion) noexcept {
 
 void Diagnosis::restart(const Motion& motion) noexcept {
   in_stretch_ = true;
-  for (Resonator& r : pitch_) r.reset();
   for (Resonator& r : flexible_) r.reset();
   mean_.reset(instant_of(motion));
   first_row_tick_ = -1;
@@ -74,12 +70,8 @@ Instant Diagnosis::instant_of(const Motion& motion) noexcept {
   const auto sharpened = [&](auto&& of) {
     return (14.0 * of(now) - of(before) - of(after)) / 12.0;
   };
-  const double turn =
+  out.turn_mps2 =
       sharpened([](const RawRing::Entry& e) { return -0.5 * (e.accel_mps2[1] - e.accel_mps2[2]); });
-  for (std::size_t i = 0; i < kPitchModes; ++i) {
-    pitch_[i].update(turn);
-    out.pitch_mps[i] = {pitch_[i].rate(), pitch_[i].acceleration()};
-  }
   const double push = sharpened([](const RawRing::Entry& e) { return -e.accel_mps2[0]; });
   before_last_ = last_bend_;
   for (std::size_t i = 0; i < kFlexibleModes; ++i) {

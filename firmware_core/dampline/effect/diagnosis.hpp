@@ -64,7 +64,6 @@ class Diagnosis {
   GramStore store_;
   ImpulseMeter impulses_;
   LawMean mean_;
-  std::array<Resonator, kPitchModes> pitch_;
   std::array<Resonator, kFlexibleModes> flexible_;
   EffectRows::Sampled last_bend_ = EffectRows::Sampled::Zero();  // of the resonators, two samples
   EffectRows::Sampled before_last_ = EffectRows::Sampled::Zero();

@@ -23,6 +23,7 @@ double decay(double x) noexcept {
 void EffectLaws::reset() noexcept {
   any_ = false;
   zeta_.fill(0.0);
+  pitch_.reset();
 }
 
 void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
@@ -49,9 +50,7 @@ void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
     out[kStribeck + at(i)] = single(sign * fading);
   }
   for (std::size_t i = 0; i < kPitchModes; ++i) {
-    const double d = 2.0 * p.pitch_mps[i];
-    out[kPitchSign + at(i)] =
-        single(0.5 * (smooth_sign(v + d, kInnerWidthMps) + smooth_sign(v - d, kInnerWidthMps)));
+    out[kPitchSign + at(i)] = single(sign * (1.0 - pitch_.opposed(i)));
   }
 }
 
@@ -93,6 +92,7 @@ void EffectLaws::memory(const Point& p, double sign, LawValues& out) noexcept {
 
 LawValues EffectLaws::operator()(const Point& point) noexcept {
   LawValues out;
+  pitch_.update(point.velocity_mps, point.turn_mps2);
   friction(point, out);
   stiffness(point.deflection_m, out);
   memory(point, smooth_sign(point.velocity_mps, kInnerWidthMps), out);

@@ -5,6 +5,7 @@
 
 #include "dampline/effect/columns.hpp"
 #include "dampline/effect/instant.hpp"
+#include "dampline/effect/pitch_bank.hpp"
 
 namespace dampline::effect {
 
@@ -16,9 +17,10 @@ using LawValues = Eigen::Matrix<float, kLawColumnsOfEffects, 1>;
 /// `scale_m`, the size of the deflection.
 class EffectLaws {
  public:
-  explicit EffectLaws(double scale_m) noexcept : scale_m_{scale_m} {}
+  EffectLaws(double scale_m, double step_s) noexcept : scale_m_{scale_m}, pitch_{step_s} {}
 
-  /// The columns at a point; points come in the order of time, since some laws remember.
+  /// The columns at a point; points come in the order of time, `step_s` apart, since some laws
+  /// remember.
   [[nodiscard]] LawValues operator()(const Point& point) noexcept;
   /// Forgets the history.
   void reset() noexcept;
@@ -34,6 +36,7 @@ class EffectLaws {
   double last_deflection_m_{0.0};
   std::array<double, kDahlDistances> zeta_{};
   std::array<double, kBacklashGaps> piston_m_{};
+  PitchBank pitch_;
 };
 
 }  // namespace dampline::effect

@@ -5,24 +5,15 @@
 #include <cmath>
 
 #include "dampline/effect/parameters.hpp"
+#include "dampline/effect/rules.hpp"
 
 namespace dampline::effect {
 namespace {
 
 constexpr std::size_t kFewestEntries = 10;
-constexpr double kClearGain = 0.05;   // passes on its own
-constexpr double kSmallGain = 0.025;  // passes with kSignificant
-constexpr double kSignificant = 2.0;
-constexpr double kLeastGain = 0.003;  // passes with kVerySignificant
-constexpr double kVerySignificant = 3.3;
-constexpr double kLaterGain = 0.02;         // of a second effect, with kLaterT
-constexpr double kLaterMemoryGain = 0.035;  // beside a law with memory
-constexpr double kLaterPictureGain = 0.1;
-constexpr double kLaterT = 4.0;
-constexpr double kLaterClearGain = 0.05;  // with kLaterClearT: stops are seldom reached
-constexpr double kLaterClearT = 2.5;
 constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
 constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
+constexpr double kReadjusted = 0.999;
 constexpr double kSimplerWithin = 0.02;
 constexpr double kGridStd = 0.29;       // of a place known to one step: 1 / sqrt(12)
 constexpr double kRowsPerFact = 4.0;    // windows overlap
@@ -37,53 +28,16 @@ bool contains(const Model& model, Effect effect) noexcept {
   return false;
 }
 
-double block_t(const ModelFit& before, const ModelFit& after, std::size_t entries) noexcept {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t e = 0; e < entries; ++e) {
-    const double d = before.held_out_error[e] - after.held_out_error[e];
-    sum += d;
-    squares += d * d;
-  }
-  const auto n = static_cast<double>(entries);
-  const double variance = (squares - sum * sum / n) / (n - 1.0);
-  return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+BaseForce base_of(const ModelFit& fit) noexcept {
+  return {fit.theta[ModelFit::kCoulomb], fit.theta[ModelFit::kStiffness]};
 }
 
+bool is_of_grid(const Candidate& a, const Candidate& b) noexcept {
+  return a.effect == b.effect && a.form == b.form;
+}
 /// Two neighbours of a grid.
 bool is_pair(const Candidate& candidate) noexcept {
   return candidate.count > 1 && candidate.effect != Effect::kAsymmetricViscous;
-}
-
-/// Sensors and modes: each is a first-order picture of what it names, and what it leaves looks like
-/// the others.
-bool is_picture(Effect effect) noexcept {
-  return effect == Effect::kTimeSkew || effect == Effect::kGainError ||
-         effect == Effect::kUnmodelledMode;
-}
-double later_gain(const Model& model, Effect effect) noexcept {
-  bool picture = false;
-  bool memory = false;
-  for (std::size_t i = 0; i < model.count; ++i) {
-    const Effect known = model.effect[i].effect;
-    picture = picture || is_picture(known);
-    memory = memory || known == Effect::kPreslidingHysteresis || known == Effect::kBacklash;
-  }
-  if (picture && is_picture(effect)) return kLaterPictureGain;
-  return memory ? kLaterMemoryGain : kLaterGain;
-}
-
-/// What a candidate must bring. The first effect is judged by gain and significance together; small
-/// errors of the velocity's phase look like a time skew, so that needs a larger gain; later effects
-/// must not be the imperfections of the first.
-bool passes(const Step& step, bool first, double later) noexcept {
-  if (!first)
-    return step.gain > later &&
-           (step.block_t > kLaterT || (step.gain > kLaterClearGain && step.block_t > kLaterClearT));
-  if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant))
-    return true;
-  return step.chosen.effect != Effect::kTimeSkew && step.gain > kLeastGain &&
-         step.block_t > kVerySignificant;
 }
 
 /// Signs that physics asks for: of the effect's first coefficient, and friction that does not
@@ -125,7 +79,7 @@ double handicap(const Candidate& candidate) noexcept {
 
 void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept {
   best = {};
-  list_candidates({now.theta[ModelFit::kCoulomb], now.theta[ModelFit::kStiffness]}, candidates_);
+  list_candidates(base_of(now), candidates_);
   for (std::size_t i = 0; i < candidates_.count; ++i) {
     const Candidate& candidate = candidates_.item[i];
     if (contains(model, candidate.effect)) continue;
@@ -141,10 +95,11 @@ void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& 
   }
 }
 
-ModelFit Explainer::settle(const GramStore& store, const Model& model) noexcept {
+ModelFit Explainer::settle(const GramStore& store, Model& model) noexcept {
   ModelFit fit = fitter_.fit(model);
   for (int i = 0; i < kWeightIterations && fit.ok; ++i) {
     evidence_.weigh(store, fitter_.weights_of(model, fit));
+    for (std::size_t e = 0; e < model.count; ++e) refresh(base_of(fit), model.effect[e]);
     fit = fitter_.fit(model);
   }
   return fit;
@@ -153,9 +108,9 @@ ModelFit Explainer::settle(const GramStore& store, const Model& model) noexcept 
 void Explainer::add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
                               Step& step) noexcept {
   const ModelFit fit = fitter_.fit(model.with(candidate));
-  step.runner_up[step.runner_up_count++] = {candidate.effect, fit.held_out_nmse,
-                                            1.0 - fit.held_out_nmse / now.held_out_nmse,
-                                            block_t(now, fit, evidence_.count)};
+  step.runner_up[step.runner_up_count++] = {
+      candidate.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / now.held_out_nmse,
+      block_t(now, fit, evidence_.count), coefficient_t(fit, now)};
 }
 
 bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
@@ -179,24 +134,66 @@ bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
       pick = i;
     }
   }
-  const Best& chosen = *order[pick];
-  const ModelFit fit = fitter_.fit(out.model.with(chosen.candidate));
+  std::swap(order[0], order[pick]);
+  for (std::size_t c = 0; c < found; ++c) {
+    const Step step = step_of(out.model, order.data(), found, c, now);
+    if (c == 0) out.rejected = step;
+    const Verdict verdict = judge_step(out.model, out.step_count == 0, c == 0, step);
+    if (verdict == Verdict::kStop) return false;
+    if (verdict == Verdict::kNo) continue;
+    out.model = out.model.with(step.chosen);
+    out.step[out.step_count++] = step;
+    out.rejected = {};
+    now = fitter_.fit(out.model);
+    return true;
+  }
+  return false;
+}
+
+/// Each effect again at every point of its grid, now that the others are in the model; the steps
+/// keep the gains that they were chosen for.
+bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < out.step_count; ++i) {
+    Candidate& place = out.model.effect[out.base_count + i];
+    const Candidate before = place;
+    Best best{true, before, now.held_out_nmse, handicap(before) * now.held_out_nmse};
+    list_candidates(base_of(now), candidates_);
+    int term = ModelFit::kFirstEffect;
+    for (std::size_t e = 0; e < out.base_count + i; ++e)
+      term += static_cast<int>(out.model.effect[e].count);
+    for (std::size_t c = 0; c < candidates_.count; ++c) {
+      if (!is_of_grid(candidates_.item[c], before)) continue;
+      place = candidates_.item[c];
+      const ModelFit fit = fitter_.fit(out.model);
+      if (!fit.ok || !plausible(place, fit, term)) continue;
+      const double judged = handicap(place) * fit.held_out_nmse;
+      if (judged < kReadjusted * best.judged) best = {true, place, fit.held_out_nmse, judged};
+    }
+    place = best.candidate;
+    out.step[i].chosen = best.candidate;
+    if (best.held_out_nmse == now.held_out_nmse) continue;
+    now = fitter_.fit(out.model);
+    any = true;
+  }
+  return any;
+}
+
+/// The c-th of the best candidates beside the others.
+Step Explainer::step_of(const Model& model, const Best* const* order, std::size_t found,
+                        std::size_t c, const ModelFit& now) noexcept {
+  const ModelFit fit = fitter_.fit(model.with(order[c]->candidate));
   Step step;
-  step.chosen = chosen.candidate;
+  step.chosen = order[c]->candidate;
   step.held_out_nmse_before = now.held_out_nmse;
   step.held_out_nmse_after = fit.held_out_nmse;
   step.gain = 1.0 - fit.held_out_nmse / now.held_out_nmse;
   step.block_t = block_t(now, fit, evidence_.count);
+  step.coefficient_t = coefficient_t(fit, now);
   for (std::size_t i = 0; i < found && step.runner_up_count < Step::kMostRunnersUp; ++i) {
-    if (i != pick) add_runner_up(out.model, order[i]->candidate, now, step);
+    if (i != c) add_runner_up(model, order[i]->candidate, now, step);
   }
-  out.rejected = step;
-  if (!passes(step, out.step_count == 0, later_gain(out.model, step.chosen.effect))) return false;
-  out.model = out.model.with(chosen.candidate);
-  out.step[out.step_count++] = step;
-  out.rejected = {};
-  now = fit;
-  return true;
+  return step;
 }
 
 void Explainer::backward(Explanation& out, ModelFit& now) noexcept {
@@ -230,12 +227,11 @@ void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
     step.place += high / (low + high);
     return;
   }
-  list_candidates({final.theta[ModelFit::kCoulomb], final.theta[ModelFit::kStiffness]},
-                  candidates_);
+  list_candidates(base_of(final), candidates_);
   std::array<double, 2> side{};
   for (std::size_t c = 0; c < candidates_.count; ++c) {
     const Candidate& other = candidates_.item[c];
-    if (other.effect != chosen.effect || other.form != chosen.form || other.count != 1) continue;
+    if (!is_of_grid(other, chosen) || other.count != 1) continue;
     const int distance = static_cast<int>(other.variant) - static_cast<int>(chosen.variant);
     if (distance != 1 && distance != -1) continue;
     Model neighbour = model;
@@ -265,7 +261,10 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   out.base = now;
   out.base_weight = evidence_.weight;
   out.base_target = evidence_.total.at(kTarget, kTarget);
-  while (forward(out, now)) now = settle(store, out.model);
+  while (forward(out, now)) {
+    now = settle(store, out.model);
+    if (readjust(out, now)) now = settle(store, out.model);
+  }
   const bool impulses = allowed_[static_cast<std::size_t>(Effect::kImpulsiveInput)];
   if (out.step_count == 0 && impulses) add_impulses(meter, now, out);
   backward(out, now);

@@ -49,7 +49,7 @@ class Explainer {
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
   /// on the twin, which has none, takes all effects back; concludes. False when the twin has too
   /// few rows.
-  bool apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
+  bool apply_floor(const GramStore& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
 
  private:
   struct Best {
@@ -61,9 +61,13 @@ class Explainer {
   using BestOfEffects = std::array<Best, kEffects>;
 
   void try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept;
-  /// Fits a model and weighs the scales by what it leaves.
-  [[nodiscard]] ModelFit settle(const GramStore& store, const Model& model) noexcept;
+  /// Fits a model, weighs the scales by what it leaves, and gives late and wrongly scaled channels
+  /// the friction and spring that the whole model has.
+  [[nodiscard]] ModelFit settle(const GramStore& store, Model& model) noexcept;
   bool forward(Explanation& out, ModelFit& now) noexcept;
+  [[nodiscard]] Step step_of(const Model& model, const Best* const* order, std::size_t found,
+                             std::size_t c, const ModelFit& now) noexcept;
+  bool readjust(Explanation& out, ModelFit& now) noexcept;
   void add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
                      Step& step) noexcept;
   void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;

@@ -29,6 +29,7 @@ struct RunnerUp {
   double held_out_nmse{0.0};
   double gain{0.0};
   double block_t{0.0};
+  double coefficient_t{0.0};
 };
 
 /// One effect that was added.
@@ -40,8 +41,9 @@ struct Step {
   double place_std{0.0};
   double held_out_nmse_before{0.0};
   double held_out_nmse_after{0.0};
-  double gain{0.0};     ///< 1 - after / before
-  double block_t{0.0};  ///< mean over deviation of the mean of the entries' improvements
+  double gain{0.0};           ///< 1 - after / before
+  double block_t{0.0};        ///< mean over deviation of the mean of the entries' improvements
+  double coefficient_t{0.0};  ///< its first coefficient over the deviation
   std::size_t runner_up_count{0};
   std::array<RunnerUp, kMostRunnersUp> runner_up{};
   std::size_t parameter_count{0};

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <array>
-
-#include "dampline/effect/columns.hpp"
-
 namespace dampline::effect {
 
 /// A value and its rate.
@@ -18,7 +14,7 @@ struct Instant {
   Slope velocity_mps;
   Slope wheelset1_mps;  ///< z_1', without drift
   Slope wheelset2_mps;
-  std::array<Slope, kPitchModes> pitch_mps{};  ///< rate of d = a theta - (z_1 - z_2) / 2
+  double turn_mps2{0.0};  ///< -(z_1'' - z_2'') / 2, what makes the frame pitch
 };
 
 /// The motion between samples.
@@ -29,7 +25,7 @@ struct Point {
   double wheelset2_mps{0.0};
   double wheelset1_mps2{0.0};
   double wheelset2_mps2{0.0};
-  std::array<double, kPitchModes> pitch_mps{};
+  double turn_mps2{0.0};
 };
 
 /// Weights of the cubic Hermite polynomial at one place between two samples.
@@ -52,9 +48,7 @@ struct Hermite {
     p.wheelset2_mps = (*this)(a.wheelset2_mps, b.wheelset2_mps);
     p.wheelset1_mps2 = (1.0 - place) * a.wheelset1_mps.rate + place * b.wheelset1_mps.rate;
     p.wheelset2_mps2 = (1.0 - place) * a.wheelset2_mps.rate + place * b.wheelset2_mps.rate;
-    for (std::size_t i = 0; i < kPitchModes; ++i) {
-      p.pitch_mps[i] = (*this)(a.pitch_mps[i], b.pitch_mps[i]);
-    }
+    p.turn_mps2 = (1.0 - place) * a.turn_mps2 + place * b.turn_mps2;
     return p;
   }
 };

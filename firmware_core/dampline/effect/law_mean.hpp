@@ -9,7 +9,7 @@ namespace dampline::effect {
 class LawMean {
  public:
   LawMean(double scale_m, double step_s) noexcept
-      : laws_{scale_m},
+      : laws_{scale_m, 0.25 * step_s},
         quarter_{Hermite::at(0.25, step_s)},
         half_{Hermite::at(0.5, step_s)},
         three_quarters_{Hermite::at(0.75, step_s)} {}

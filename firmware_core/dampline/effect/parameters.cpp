@@ -143,8 +143,13 @@ void describe_rest(const Source& s, Step& step) noexcept {
   switch (step.chosen.effect) {
     case Effect::kTimeSkew:
       return add(step, kSkew[step.chosen.form], s.coefficient(0, 1.0), "s");
-    case Effect::kGainError:
-      return add(step, kGain[step.chosen.form], s.coefficient(0, 1.0), "");
+    case Effect::kGainError: {
+      const Estimate e = s.coefficient(0, 1.0);
+      if (step.chosen.form != kFrameForm) return add(step, kGain[step.chosen.form], e, "");
+      // z_b'' = (1 - e) times what is measured, which is 1 + gain times it.
+      const double left = 1.0 / (1.0 - e.value);
+      return add(step, kGain[step.chosen.form], {e.value * left, e.std * left * left}, "");
+    }
     case Effect::kUnmodelledMode:
       return describe_mode(s, step);
     default:
@@ -152,19 +157,21 @@ void describe_rest(const Source& s, Step& step) noexcept {
   }
 }
 
-/// With a mass on the frame, the frame's own share of all moving mass: every coefficient is divided
-/// by it.
+/// What multiplies every coefficient. With a mass on the frame that is the frame's own share of all
+/// moving mass; a frame's sensor that shows too much stretches all forces.
 double own_share(const ModelFit& fit, const Model& model) noexcept {
   double ratio = 0.0;
+  double stretch = 1.0;
   int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i) {
     const Candidate& c = model.effect[i];
     if (c.effect == Effect::kUnmodelledMode && c.form == kFlexibleForm) {
       for (std::size_t r = 0; r < c.count; ++r) ratio -= fit.theta[term + static_cast<int>(r)];
     }
+    if (c.effect == Effect::kGainError && c.form == kFrameForm) stretch -= fit.theta[term];
     term += static_cast<int>(c.count);
   }
-  return 1.0 / (1.0 + ratio);
+  return stretch / (1.0 + ratio);
 }
 
 /// Friction that a history replaced still counts: the level is what multiplies +-1 in steady

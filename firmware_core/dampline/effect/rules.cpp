@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kClearGain = 0.05;   // passes on its own
+constexpr double kSmallGain = 0.025;  // passes with kSignificant
+constexpr double kSignificant = 2.0;
+constexpr double kLeastGain = 0.003;  // passes with kVerySignificant
+constexpr double kVerySignificant = 3.3;
+constexpr double kLaterGain = 0.012;        // of a later effect, with kLaterT and kLaterZ
+constexpr double kLaterSensorGain = 0.015;  // beside a law with memory
+constexpr double kLaterMemoryGain = 0.035;
+constexpr double kLookalikeGain = 0.06;
+constexpr double kLaterT = 3.5;
+constexpr double kLaterZ = 10.0;
+constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ: stops are seldom reached
+constexpr double kLaterClearZ = 8.0;
+constexpr double kFaintZ = 4.2;
+
+bool is_memory(Effect effect) noexcept {
+  return effect == Effect::kPreslidingHysteresis || effect == Effect::kBacklash;
+}
+
+bool is_even_spring(Effect effect) noexcept {
+  return effect == Effect::kQuadraticStiffness || effect == Effect::kAsymmetricStiffness;
+}
+bool is_bent_spring(Effect effect) noexcept {
+  return effect == Effect::kBumpStop || effect == Effect::kCubicStiffness;
+}
+
+/// The gain that a later effect needs beside one that is in the model. What a late channel leaves,
+/// in second order, looks like a mode or like friction that builds up; friction that builds up to
+/// other levels in each direction, like progressive friction. The deflection comes without its
+/// mean, so that a stop or a curved spring is not seen from its centre and leaves something even.
+double gain_beside(Effect known, Effect effect) noexcept {
+  if (known == Effect::kTimeSkew && (effect == Effect::kUnmodelledMode || is_memory(effect)))
+    return kLookalikeGain;
+  if (is_bent_spring(known) && is_even_spring(effect)) return kLaterMemoryGain;
+  if (is_memory(effect)) return kLaterMemoryGain;
+  if (!is_memory(known)) return kLaterGain;
+  return effect == Effect::kProgressiveFriction ? kLaterMemoryGain : kLaterSensorGain;
+}
+double later_gain(const Model& model, Effect effect) noexcept {
+  double gain = kLaterGain;
+  for (std::size_t i = 0; i < model.count; ++i)
+    gain = std::max(gain, gain_beside(model.effect[i].effect, effect));
+  return gain;
+}
+
+bool passes_later(const Step& step, double gain) noexcept {
+  if (step.gain <= gain) return false;
+  const bool clear =
+      step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kLaterClearT);
+  return clear ? step.coefficient_t > kLaterClearZ
+               : step.coefficient_t > kLaterZ && step.block_t > kLaterT;
+}
+
+/// Small errors of the velocity's phase look like a time skew, so that needs a larger gain.
+bool passes_first(const Step& step) noexcept {
+  if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant))
+    return true;
+  return step.chosen.effect != Effect::kTimeSkew && step.gain > kLeastGain &&
+         step.block_t > kVerySignificant;
+}
+
+/// A spring that bends: small beside what sensors and the law's width leave where the truck hardly
+/// reaches its curve, yet sure. What else is so small may be an imperfection: friction's are of the
+/// velocity's error, channels and modes fit many things, and stops a few values.
+bool is_faint(const Step& step) noexcept {
+  const Effect e = step.chosen.effect;
+  const bool spring = e == Effect::kCubicStiffness || e == Effect::kQuadraticStiffness ||
+                      e == Effect::kAsymmetricStiffness;
+  return spring && step.gain > 0.0 && step.coefficient_t > kFaintZ;
+}
+
+}  // namespace
+
+double block_t(const ModelFit& before, const ModelFit& after, std::size_t entries) noexcept {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t e = 0; e < entries; ++e) {
+    const double d = before.held_out_error[e] - after.held_out_error[e];
+    sum += d;
+    squares += d * d;
+  }
+  const auto n = static_cast<double>(entries);
+  const double variance = (squares - sum * sum / n) / (n - 1.0);
+  return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+}
+
+double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {
+  const int i = before.terms;
+  return std::abs(fit.theta[i]) / std::sqrt(std::max(fit.covariance(i, i), 1e-300));
+}
+
+Verdict judge_step(const Model& model, bool first, bool best, const Step& step) noexcept {
+  if (first) {
+    const bool joins = is_faint(step) || (best && passes_first(step));
+    return joins ? Verdict::kYes : Verdict::kNo;
+  }
+  if (passes_later(step, later_gain(model, step.chosen.effect))) return Verdict::kYes;
+  // The best is but an imperfection of what is in the model: so may be all that explain less.
+  return passes_later(step, kLaterGain) ? Verdict::kStop : Verdict::kNo;
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "dampline/effect/explanation.hpp"
+
+namespace dampline::effect {
+
+/// Mean over deviation of the mean of the entries' improvements from one model to another.
+[[nodiscard]] double block_t(const ModelFit& before, const ModelFit& after,
+                             std::size_t entries) noexcept;
+/// The first coefficient that a model has beyond another's, over its deviation.
+[[nodiscard]] double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept;
+
+/// What becomes of a candidate: it joins the model, the next best is looked at, or nothing does.
+enum class Verdict : std::uint8_t { kYes, kNo, kStop };
+
+/// What a candidate must bring to join a model. The first effect is judged by gain and significance
+/// together, and only the best is looked at but for springs that bend; a later one by what the
+/// model leaves, by the size of its coefficient over the deviation, and by what it is beside: the
+/// imperfections of an effect look like others. `best`: no other candidate leaves less.
+[[nodiscard]] Verdict judge_step(const Model& model, bool first, bool best,
+                                 const Step& step) noexcept;
+
+}  // namespace dampline::effect
