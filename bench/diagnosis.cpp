@@ -46,8 +46,9 @@ std::string median_and_range(std::vector<double> values) {
 struct Tally {
   double floor_within{0.1};
   std::map<std::string, std::map<std::string, int>> confusion;
-  Share right, wrong, alarm, magnitude, repaired, extra, withheld, complete, floor;
+  Share right, wrong, alarm, magnitude, repaired, extra, withheld, complete, floor, as_true;
   std::vector<double> floors, ratios;  // over what is left: of clean records, of right ones
+  std::vector<double> over_true;       // left over what the true model leaves
   std::string misses;
 
   void add(const std::string& kind, const Condition& condition, const DiagnosedRecord& record) {
@@ -80,6 +81,10 @@ struct Tally {
     wrong.add(e.step_count > 0 && !named);
     extra.add(e.step_count > 1);
     if (named) add_sizes(record);
+    if (named && record.true_nmse > 0.0) {
+      over_true.push_back(e.final.held_out_nmse / record.true_nmse);
+      as_true.add(over_true.back() <= 1.1);
+    }
   }
 
  private:
@@ -134,6 +139,9 @@ void print(const Tally& tally) {
   fmt::print("| left over floor, of the right ones: median (range) | {} | |\n",
              median_and_range(tally.ratios));
   fmt::print("| the same up to 1.5 | {} | |\n", tally.complete.text());
+  fmt::print("| left over what the model with the true length leaves: median (range) | {} | |\n",
+             median_and_range(tally.over_true));
+  fmt::print("| the same up to 1.1 | {} | all |\n", tally.as_true.text());
   fmt::print("\n| condition | planted | named | best candidate |\n|--|--|--|--|\n{}", tally.misses);
 }
 

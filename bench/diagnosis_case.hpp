@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "app/explain/explain_truck.hpp"
+#include "app/explain/truck_pass.hpp"
+#include "dampline/effect/explainer.hpp"
 #include "drivers/candump/line_writer.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/nodes.hpp"
@@ -126,6 +131,7 @@ struct DiagnosedRecord {
   std::vector<Planted> planted;
   double coulomb_n{0.0};
   double stiffness_npm{0.0};
+  double true_nmse{0.0};  ///< held out, by the model with the true length; 0: none was fitted
   [[nodiscard]] bool names(std::size_t step, const std::string& effect) const {
     return step < explanation.step_count &&
            effect::name_of(explanation.step[step].chosen.effect) == effect;
@@ -148,6 +154,43 @@ inline void write_record(const sim::SimulationConfig& config, double length_s,
   std::ofstream{path}.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
+/// The size of the deflection that puts a true length on a point of its grid, near to `scale_m`.
+template <std::size_t N>
+double scale_with(const std::array<double, N>& grid, double truth_m, double scale_m) {
+  double best_m = truth_m / grid[0];
+  for (const double g : grid) {
+    if (std::abs(std::log(truth_m / g / scale_m)) < std::abs(std::log(best_m / scale_m)))
+      best_m = truth_m / g;
+  }
+  return best_m;
+}
+
+/// The scale with which the candidates of a planted effect hold the true one; 0: they have no
+/// lengths.
+inline double true_scale_m(const Planted& planted, double scale_m) {
+  if (planted.parameter == "bump_stop_gap")
+    return scale_with(effect::kBumpGap, planted.truth, scale_m);
+  if (planted.parameter == "presliding_hysteresis_distance")
+    return scale_with(effect::kDahlDistance, planted.truth, scale_m);
+  if (planted.parameter == "backlash_gap")
+    return scale_with(effect::kBacklashGap, planted.truth, scale_m);
+  return 0.0;
+}
+
+/// What the true model leaves of a record: the planted effect alone, with its length on the grid.
+inline double true_nmse_of(const app::Config& settings, const std::string& path,
+                           const Planted& planted) {
+  const app::TruckPass first = app::pass_of(settings, {path, false}, {});
+  const double scale_m = true_scale_m(planted, first.diagnosis->scale_m());
+  const app::TruckPass pass = app::pass_of(settings, {path, false}, {scale_m, false, {}});
+  effect::ExplainerConfig wanted;
+  wanted.moving_mass_kg = settings.car.moving_mass_kg;
+  for (std::size_t i = 0; i < effect::kEffects; ++i)
+    wanted.allowed[i] = planted.effect == effect::name_of(static_cast<effect::Effect>(i));
+  const auto explainer = std::make_unique<effect::Explainer>();
+  return explainer->explain(*pass.diagnosis, wanted).final.held_out_nmse;
+}
+
 /// As `dampline explain` does it: guards, floor and all.
 inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted> planted,
                                 std::uint64_t seed, double noise = 1.0) {
@@ -164,8 +207,10 @@ inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted>
   app::Config settings;
   settings.car.moving_mass_kg = config.truck.moving_mass_kg;
   const app::Explained found = app::explain_truck(settings, {{path, false}, {}, false});
-  std::filesystem::remove(path);
   DiagnosedRecord out;
+  if (planted.size() == 1 && true_scale_m(planted[0], 1e-3) > 0.0)
+    out.true_nmse = true_nmse_of(settings, path, planted[0]);
+  std::filesystem::remove(path);
   out.explanation = found.explanation;
   out.withheld = found.withheld;
   out.drifts = found.drifts;

@@ -123,7 +123,7 @@ void look_again(const Config& config, const ExplainOptions& options, const Truck
   if (!twin) return;
   const std::size_t steps = out.explanation.step_count;
   const auto conclusion = out.explanation.conclusion;
-  explainer.apply_floor(twin->finish().store(), out.identified.faults.impacts, out.explanation);
+  explainer.apply_floor(twin->finish(), out.identified.faults.impacts, out.explanation);
   if (out.withheld || out.drifts) out.explanation.conclusion = conclusion;
   // A twin that shows the same effect has taken it back: what is left is the base's.
   if (out.explanation.step_count != steps) read_again(config, options, core, first, nullptr, out);

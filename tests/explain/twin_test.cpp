@@ -139,7 +139,7 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
     if (t) twins->update(*t, again->update(*t));
   }
   twins->finish();
-  EXPECT_TRUE(explainer->apply_floor(twins->store(), 0, e));
+  EXPECT_TRUE(explainer->apply_floor(*twins, 0, e));
   out.truth = e.base.held_out_nmse;
   return out;
 }

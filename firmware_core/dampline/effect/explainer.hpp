@@ -49,7 +49,7 @@ class Explainer {
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
   /// on the twin, which has none, takes all effects back; concludes. False when the twin has too
   /// few rows.
-  bool apply_floor(const GramStore& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
+  bool apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
 
  private:
   struct Best {

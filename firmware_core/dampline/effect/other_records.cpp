@@ -16,8 +16,8 @@ Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanati
   return {fitter_.nmse_of(by.base_model, by.base), fitter_.nmse_of(by.model, by.final)};
 }
 
-bool Explainer::apply_floor(const GramStore& store, std::uint64_t impacts,
-                            Explanation& e) noexcept {
+bool Explainer::apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& e) noexcept {
+  const GramStore& store = twin.store();
   if (store.count() < kFewestEntries || !evidence_.load(store)) return false;
   // Errors of the twin as shares of the record's own sum of squares.
   const auto left = [&](const ModelFit& fit, double target) {
