@@ -93,5 +93,25 @@ TEST(LawThatChanges, IsNamedWithWhatChangesAndHowMuch) {
   EXPECT_NEAR(step.steps[0].parameters[1].value, 22.7, 3.5) << summarize(step);
 }
 
+TEST(Impacts, AreCountedAndLeaveTheRestToBeFound) {
+  // Twenty bursts that ring down within 15 ms, at moments of no regularity; and a constant.
+  const auto burst = [](double t) {
+    double sum = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      const double since = t - (1.37 + 2.9 * i + 0.8 * std::sin(7.0 * i));
+      if (since > 0.0)
+        sum += (i % 2 == 0 ? 3500.0 : -2600.0) * std::exp(-since / 0.004) * std::cos(500.0 * since);
+    }
+    return sum;
+  };
+  const RigExplanation found = explained(
+      [&](double t) { return friction_at(t) + 3000.0 * velocity_at(t) + burst(t) - 150.0; }, 65);
+  ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
+  EXPECT_EQ(found.steps[0].effect, "impulsive_input");
+  EXPECT_EQ(found.steps[1].effect, "offset_force") << summarize(found);
+  EXPECT_NEAR(found.steps[0].parameters[0].value, 20.0, 4.0);
+  EXPECT_NEAR(found.steps[1].parameters[0].value, -150.0, 5.0);
+}
+
 }  // namespace
 }  // namespace dampline::app

@@ -117,7 +117,7 @@ void RigSearch::describe_drift(Chosen& c, const Judged& now, const ColumnSet& se
 void RigSearch::describe_steps(const Judged& now) {
   const ColumnSet set = set_of(chosen_columns(), now.width);
   for (Chosen& c : chosen_) {
-    if (c.step.effect == "time_skew") continue;
+    if (c.step.effect == "time_skew" || c.step.effect == "impulsive_input") continue;
     if (c.step.effect == "time_drift") {
       describe_drift(c, now, set);
       continue;

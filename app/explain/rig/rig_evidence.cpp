@@ -36,6 +36,13 @@ Eigen::Index stride_of(const RigSeries& series, bool filtered) {
   return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(samples));
 }
 
+void leave_out(const RigSeries& record, RigRows& rows) {
+  if (record.left_out.size() != record.size()) return;
+  for (std::size_t i = 0; i < rows.sample.size(); ++i)
+    if (record.left_out[rows.sample[i]] > 0.0)
+      rows.values.row(static_cast<Eigen::Index>(i)).setZero();
+}
+
 /// Columns of very different units on one scale.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& normal) {
   Eigen::VectorXd scale = normal.diagonal();
@@ -84,10 +91,11 @@ RigEvidence::RigEvidence(std::vector<RigColumn> columns, const std::vector<RigSe
   });
   const std::size_t parts = std::max<std::size_t>(3, kBlocks / records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const RigRows rows = rows_of(columns_, records[r], stride_of(records[r], filtered));
+    RigRows rows = rows_of(columns_, records[r], stride_of(records[r], filtered));
     const Eigen::Index count = rows.values.rows();
     const Eigen::VectorXd force = rows.values.rightCols<1>();
     const double weight = 1.0 / (force.array() - force.mean()).square().sum();
+    leave_out(records[r], rows);
     for (std::size_t p = 0; p < parts; ++p) {
       const auto from = count * static_cast<Eigen::Index>(p) / static_cast<Eigen::Index>(parts);
       const auto to = count * static_cast<Eigen::Index>(p + 1) / static_cast<Eigen::Index>(parts);

@@ -43,6 +43,7 @@ struct RigLibrary {
   bool base_spring{false};
   bool wants_skew{false};
   bool wants_drift{false};
+  bool wants_impacts{false};
   std::vector<RigCandidate> candidates;
 
   Eigen::Index add(const RigColumn& column);

@@ -117,6 +117,7 @@ RigExplanation RigSearch::run() {
   out.whole_records = evidence_->folds() == records_.size();
   if (filtered()) out.filter_hz = records_.front().config.corner_hz;
   describe(out.base, judge({}), {});
+  if (library_.wants_impacts) leave_impacts_out();
   while (chosen_.size() < kMostSteps && forward()) {
   }
   backward();

@@ -60,6 +60,7 @@ class RigSearch {
   [[nodiscard]] bool is_better(const RigTrial& trial, const std::vector<Ranked>& order) const;
   void take(const RigTrial& trial, double before);
   void describe_drift(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
+  void leave_impacts_out();
   bool forward();
   [[nodiscard]] static double other_memory_of(const std::vector<Ranked>& order);
   void rename_memory(Chosen& memory) const;

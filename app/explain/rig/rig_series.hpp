@@ -20,6 +20,7 @@ struct RigSeries {
   Eigen::VectorXd velocity_mps;
   Eigen::VectorXd force_n;
   Eigen::VectorXd reference_n;  ///< another prediction of the force, NaN where there is none; empty
+  Eigen::VectorXd left_out;     ///< 1: takes no part in a fit or its error; empty: none
   double noise_m{0.0};          ///< of the deflection, rms
   double start_m{0.0};          ///< slip of all friction elements at the first sample
 

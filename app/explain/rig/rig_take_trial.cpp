@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "app/explain/rig/rig_impacts.hpp"
 #include "app/explain/rig/rig_rank.hpp"
 #include "app/explain/rig/rig_search.hpp"
 
@@ -10,10 +12,64 @@ namespace {
 
 constexpr double kLeastGain = 0.1;
 constexpr double kSignificant = 3.0;
+constexpr double kClearMemory = 0.2;
 constexpr double kBetter = 0.85;      // of what the best column leaves
 constexpr double kStepPlace = 0.029;  // of the record: a tenth, evenly spread
 
 }  // namespace
+
+/// Impacts come first: they are in every column's way. What is judged later is judged without the
+/// moments about them.
+void RigSearch::leave_impacts_out() {
+  const Judged before = judge({});
+  const Judged rough = judge(joined({}, {library_.spring, library_.offset}));
+  if (!before.fit.ok || !rough.fit.ok || filtered()) return;
+  const double floor = floor_of({library_.spring, library_.offset}).nmse;
+  if (rough.fit.held_out_nmse < RigExplanation::kIncompleteAbove * floor) return;
+  // What takes up a play, or builds up anew, may do it with a jerk.
+  const std::vector<Ranked> order = rank();
+  if (!order.empty() && is_memory(order.front().candidate->effect) &&
+      order.front().gain > kClearMemory)
+    return;
+  std::vector<RigColumn> columns;
+  for (const Eigen::Index i : set_of({library_.spring, library_.offset}, rough.width))
+    columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  std::vector<Eigen::VectorXd> left_n;
+  for (const RigSeries& record : records_) {
+    left_n.push_back(record.force_n);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      left_n.back() -= rough.fit.theta[static_cast<Eigen::Index>(c)] * evaluate(columns[c], record);
+  }
+  const RigImpacts impacts = find_impacts(records_, left_n);
+  if (!impacts.found()) return;
+  std::vector<RigSeries> kept = records_;
+  for (std::size_t r = 0; r < kept.size(); ++r) kept[r].left_out = impacts.left_out[r];
+  std::swap(records_, kept);
+  auto all = std::move(evidence_);
+  evidence_ = std::make_unique<RigEvidence>(library_.columns, records_);
+  const Judged after = judge({});
+  Chosen chosen;
+  chosen.step.gain = 1.0 - after.fit.held_out_nmse / before.fit.held_out_nmse;
+  chosen.step.block_t = block_t(before.fit, after.fit);
+  if (!after.fit.ok || chosen.step.gain < kLeastGain) {
+    std::swap(records_, kept);
+    evidence_ = std::move(all);
+    return;
+  }
+  chosen.candidate.effect = chosen.step.effect = "impulsive_input";
+  chosen.step.held_out_before = before.fit.held_out_nmse;
+  chosen.step.held_out_after = after.fit.held_out_nmse;
+  const auto count = static_cast<double>(impacts.peak_n.size());
+  double mean = 0.0;
+  double squares = 0.0;
+  for (const double p : impacts.peak_n) mean += p / count;
+  for (const double p : impacts.peak_n) squares += (p - mean) * (p - mean);
+  chosen.step.parameters = {
+      {"impulsive_input_count", count, std::sqrt(count), ""},
+      {"impulsive_input_force", mean, std::sqrt(squares / (count * (count - 1.0))), "N"}};
+  chosen_.push_back(chosen);
+  chosen_.back().step.terms = terms();
+}
 
 RigTrialBase RigSearch::trial_base() const {
   RigTrialBase out;

@@ -170,6 +170,7 @@ RigSeries rig_twin(const RigSeries& record, const RigLaw& law, std::uint64_t see
         Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()))};
   };
   RigSeries twin = record;
+  twin.left_out.resize(0);
   twin.time_s = vector(out[0]);
   twin.deflection_m = vector(out[1]);
   twin.velocity_mps = vector(out[2]);
