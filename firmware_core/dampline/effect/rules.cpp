@@ -15,6 +15,7 @@ constexpr double kVerySignificant = 3.3;
 constexpr double kLaterGain = 0.012;        // of a later effect, with kLaterT and kLaterZ
 constexpr double kLaterSensorGain = 0.015;  // beside a law with memory
 constexpr double kLaterMemoryGain = 0.035;
+constexpr double kSkewBesideMemoryGain = 0.05;
 constexpr double kLookalikeGain = 0.06;
 constexpr double kLaterT = 3.5;
 constexpr double kLaterZ = 10.0;
@@ -42,7 +43,9 @@ double gain_beside(Effect known, Effect effect) noexcept {
     return kLookalikeGain;
   if (is_bent_spring(known) && is_even_spring(effect)) return kLaterMemoryGain;
   if (is_memory(effect)) return kLaterMemoryGain;
+  if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
   if (!is_memory(known)) return kLaterGain;
+  if (effect == Effect::kTimeSkew) return kSkewBesideMemoryGain;
   return effect == Effect::kProgressiveFriction ? kLaterMemoryGain : kLaterSensorGain;
 }
 double later_gain(const Model& model, Effect effect) noexcept {
