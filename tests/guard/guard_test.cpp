@@ -215,6 +215,21 @@ TEST(Guard, NamesExchangedAndInvertedSensors) {
   }
 }
 
+// Worn out and on soft springs a truck resonates at 1.6 or 1.8 Hz, above which it moves against the
+// track.
+TEST(Guard, TakesAResonanceForNoSensorUpsideDown) {
+  const auto worn = [](double stiffness_npm, bool inverted) {
+    return names(*run([&](Trial& s) {
+      s.simulation.truck.stiffness_npm = stiffness_npm;
+      s.simulation.truck.friction_scale = 0.1;
+      s.faults.inverted[0] = inverted;
+    }));
+  };
+  EXPECT_THAT(worn(1.9e6, false), IsEmpty());
+  EXPECT_THAT(worn(2.5e6, false), IsEmpty());
+  EXPECT_THAT(worn(2.5e6, true), Contains("wrong_polarity frame"));
+}
+
 TEST(Guard, NamesNoiseAndItsBursts) {
   EXPECT_THAT(names(*run([](Trial& s) { s.faults.noise_mps2[0] = 0.08; })),
               Names{"excess_noise frame"});

@@ -38,7 +38,7 @@ BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alia
     : rate_hz_{sample_rate_hz},
       bin_hz_{sample_rate_hz / static_cast<double>(Fourier512::kSize)},
       shared_{band(4.0, 0.3 * sample_rate_hz)},
-      follow_{band(1.1, 1.8)},
+      follow_{band(1.1, 1.6)},
       fast_{band(40.0, 0.333 * sample_rate_hz)},
       lag_{band(15.0, 0.317 * sample_rate_hz)},
       middle_{band(0.15 * sample_rate_hz, 0.283 * sample_rate_hz)},

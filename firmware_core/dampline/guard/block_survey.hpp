@@ -23,8 +23,8 @@ struct BlockFigures {
   double log_gain{0.0};     ///< ln of the gain of wheelset 1 over wheelset 2, 4-90 Hz, mean of bins
   double frame_power{0.0};  ///< power of the frame over that of a wheelset, 40-100 Hz
   double wheelset_mps2{0.0};       ///< rms of the wheelsets, 4-90 Hz
-  std::array<double, 2> follow{};  ///< sign: the frame follows this wheelset at 1-2 Hz
-  double following{0.0};           ///< real part of the transfer from wheelsets to frame at 1-2 Hz
+  std::array<double, 2> follow{};  ///< sign: the frame follows this wheelset below resonance
+  double following{0.0};           ///< real part of the transfer to the frame below resonance
   /// The frame's fast motion is coherent with the wheelsets'; then by how much it lags, more than
   /// in the blocks before: their mean, wheelset 1, wheelset 2.
   bool has_lag{false};
