@@ -115,6 +115,7 @@ TEST(BlackboxDamage, EveryMissingByteLosesExactlyItsRecord) {
   }
 }
 
+// A checksum may end in a zero, and a hole that begins there leaves its record as it was.
 TEST(BlackboxDamage, EveryHoleOfASectorLosesExactlyTheRecordsInIt) {
   const SmallBox box;
   for (std::size_t at = 0; at < box.bytes().size(); ++at) {
@@ -122,9 +123,10 @@ TEST(BlackboxDamage, EveryHoleOfASectorLosesExactlyTheRecordsInIt) {
     const std::size_t end = std::min(at + 512, bytes.size());
     std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(at),
               bytes.begin() + static_cast<std::ptrdiff_t>(end), '\0');
+    const std::size_t hit = std::min(box.bytes().find_first_not_of('\0', at), end);
     const BoxContent content = box.with(bytes);
     ASSERT_TRUE(content.opened) << at;
-    ASSERT_EQ(content.numbers(), box.beside(at, end)) << at;
+    ASSERT_EQ(content.numbers(), box.beside(hit, end)) << at;
     ASSERT_TRUE(content.all_true()) << at;
   }
 }
