@@ -136,14 +136,15 @@ std::string support_panel() {
 
 PlotScript plot_curve(const RunResult& result) {
   if (result.curve.empty()) return {};
-  const double limit = 1.05e3 * std::max(std::fabs(result.curve.front().velocity_mps),
-                                         std::fabs(result.curve.back().velocity_mps));
+  const double fastest_mps = std::max(std::fabs(result.curve.front().velocity_mps),
+                                      std::fabs(result.curve.back().velocity_mps));
+  const double limit = 1.05e3 * fastest_mps;
   double largest = 0.0;
   for (const CurveRow& r : result.curve) largest = std::max(largest, std::fabs(r.force_n));
   const PlotUnit unit = plot_unit("N", largest);
   const double from_mps = resolved_from_mps(result);
   // Where not one velocity is resolved, all are drawn, and the grey zone says so.
-  const double drawn_from_mps = 1e3 * from_mps * 1.05 < limit ? from_mps : 0.0;
+  const double drawn_from_mps = from_mps < fastest_mps ? from_mps : 0.0;
   std::string script{kPlotFrame};
   script +=
       curve_data(resolved(result.curve, drawn_from_mps), unit.factor) + support_data(result.curve);

@@ -30,6 +30,12 @@ struct Read {
   double play_share{0.0};  ///< travel below kSoft over that between nine tenths of either level
 };
 
+double longest_of(const std::vector<BankElement>& bank) {
+  double out = 0.0;
+  for (const BankElement& e : bank) out = std::max(out, e.travel_m);
+  return out;
+}
+
 Read read_bank(const std::vector<RigColumn>& columns, const Eigen::VectorXd& theta,
                double longest_m) {
   RigSeries slow;
@@ -112,24 +118,15 @@ void RigSearch::refine(Chosen& memory) {
 void RigSearch::rename_memory(Chosen& memory) const {
   if (memory.other_memory == 0.0 || memory.other_memory > kUndecided) return;
   const Judged now = judge(chosen_columns());
-  std::vector<RigColumn> columns;
-  for (const Eigen::Index i : set_of(chosen_columns(), now.width))
-    columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
-  double longest_m = 0.0;
-  for (const BankElement& e : bank_) longest_m = std::max(longest_m, e.travel_m);
-  const Read read = read_bank(columns, now.fit.theta, longest_m);
-  std::string& effect = memory.step.effect;
-  if (read.play_share > kPlay) effect = "backlash";
-  memory.candidate.effect = effect;
+  const Read read =
+      read_bank(columns_of(set_of(chosen_columns(), now.width)), now.fit.theta, longest_of(bank_));
+  if (read.play_share > kPlay) memory.step.effect = memory.candidate.effect = "backlash";
 }
 
 /// The deviation of each figure by the jackknife over the folds.
 void RigSearch::describe_bank(Chosen& chosen, const Judged& now) const {
-  std::vector<RigColumn> columns;
-  for (const Eigen::Index i : set_of(chosen_columns(), now.width))
-    columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
-  double longest_m = 0.0;
-  for (const BankElement& e : bank_) longest_m = std::max(longest_m, e.travel_m);
+  const std::vector<RigColumn> columns = columns_of(set_of(chosen_columns(), now.width));
+  const double longest_m = longest_of(bank_);
   const Read all = read_bank(columns, now.fit.theta, longest_m);
   std::vector<Read> left;
   for (const Eigen::VectorXd& theta : now.fit.left_out)

@@ -56,14 +56,19 @@ ColumnSet RigSearch::chosen_columns() const {
   return out;
 }
 
+std::vector<RigColumn> RigSearch::columns_of(const ColumnSet& set) const {
+  std::vector<RigColumn> out;
+  out.reserve(set.size());
+  for (const Eigen::Index i : set) out.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  return out;
+}
+
 RigFloor RigSearch::floor_of(const ColumnSet& more) const {
   const Judged judged = judge(more);
   if (!judged.fit.ok) return {};
   RigLaw law;
-  for (const Eigen::Index i : set_of(more, judged.width))
-    law.columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
-  for (const Eigen::Index i : library_.friction)
-    law.friction.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  law.columns = columns_of(set_of(more, judged.width));
+  law.friction = columns_of(library_.friction);
   law.theta = judged.fit.theta;
   law.ridge = ridge();
   return rig_floor(records_, law);

@@ -45,6 +45,7 @@ class RigSearch {
   [[nodiscard]] ColumnSet set_of(const ColumnSet& more, std::size_t width) const;
   [[nodiscard]] Judged judge(const ColumnSet& more) const;
   [[nodiscard]] ColumnSet chosen_columns() const;
+  [[nodiscard]] std::vector<RigColumn> columns_of(const ColumnSet& set) const;
   [[nodiscard]] double ridge() const;
   [[nodiscard]] bool can_add(const RigCandidate& candidate) const;
   [[nodiscard]] std::vector<std::string> terms() const;

@@ -31,9 +31,8 @@ void RigSearch::leave_impacts_out() {
   if (!order.empty() && is_memory(order.front().candidate->effect) &&
       order.front().gain > kClearMemory)
     return;
-  std::vector<RigColumn> columns;
-  for (const Eigen::Index i : set_of({library_.spring, library_.offset}, rough.width))
-    columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  const std::vector<RigColumn> columns =
+      columns_of(set_of({library_.spring, library_.offset}, rough.width));
   std::vector<Eigen::VectorXd> left_n;
   for (const RigSeries& record : records_) {
     left_n.push_back(record.force_n);
@@ -75,12 +74,12 @@ RigTrialBase RigSearch::trial_base() const {
   RigTrialBase out;
   const ColumnSet more = joined(chosen_columns(), {library_.spring, library_.offset});
   const bool sign = library_.base_friction && base_friction_left_;
-  for (const Eigen::Index i : set_of(more, 0))
-    if (!sign || i != library_.friction[0])
-      out.columns.push_back(library_.columns[static_cast<std::size_t>(i)]);
-  if (sign)
-    for (const Eigen::Index i : library_.friction)
-      out.friction.push_back(library_.columns[static_cast<std::size_t>(i)]);
+  ColumnSet set = set_of(more, 0);
+  if (sign) {
+    std::erase(set, library_.friction[0]);
+    out.friction = columns_of(library_.friction);
+  }
+  out.columns = columns_of(set);
   out.ridge = ridge();
   return out;
 }

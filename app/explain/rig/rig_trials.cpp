@@ -22,9 +22,10 @@ ColumnSet first_columns(std::size_t count) {
   return out;
 }
 
-/// The best of all ways to write sign v.
-RigFit fit_of(const std::vector<RigSeries>& records, const RigTrialBase& base,
-              const std::vector<RigColumn>& more = {}) {
+}  // namespace
+
+RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base,
+                const std::vector<RigColumn>& more) {
   std::vector<RigColumn> columns = base.columns;
   columns.insert(columns.end(), more.begin(), more.end());
   const auto first = static_cast<Eigen::Index>(columns.size());
@@ -41,11 +42,13 @@ RigFit fit_of(const std::vector<RigSeries>& records, const RigTrialBase& base,
   return best;
 }
 
+namespace {
+
 RigFit skewed_fit(const std::vector<RigSeries>& records, const RigTrialBase& base, double skew_s) {
   std::vector<RigSeries> moved;
   moved.reserve(records.size());
   for (const RigSeries& r : records) moved.push_back(delayed(r, skew_s));
-  return fit_of(moved, base);
+  return best_fit(moved, base);
 }
 
 double between(const Eigen::VectorXd& y, double place) {
@@ -89,7 +92,7 @@ std::vector<Drifting> what_may_drift(const std::vector<RigSeries>& records,
   RigColumn best;
   double least = -1.0;
   for (const RigColumn& friction : base.friction) {
-    const double nmse = fit_of(records, {base.columns, {friction}, base.ridge}).held_out_nmse;
+    const double nmse = best_fit(records, {base.columns, {friction}, base.ridge}).held_out_nmse;
     if (least >= 0.0 && nmse >= least) continue;
     least = nmse;
     best = friction;
@@ -112,7 +115,7 @@ RigSeries delayed(const RigSeries& record, double skew_s) {
 
 std::optional<RigTrial> try_skew(const std::vector<RigSeries>& records, const RigTrialBase& base) {
   const double interval_s = records.front().interval_s;
-  const RigFit without = fit_of(records, base);
+  const RigFit without = best_fit(records, base);
   if (!without.ok) return std::nullopt;
   RigTrial best;
   best.effect = "time_skew";
@@ -161,7 +164,7 @@ double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase&
 std::optional<RigTrial> try_drift(const std::vector<RigSeries>& records, const RigTrialBase& base) {
   std::vector<RigColumn> columns = base.columns;
   columns.insert(columns.end(), base.friction.begin(), base.friction.end());
-  const RigFit without = fit_of(records, base);
+  const RigFit without = best_fit(records, base);
   if (!without.ok) return std::nullopt;
   RigTrial best;
   best.effect = "time_drift";
@@ -171,7 +174,7 @@ std::optional<RigTrial> try_drift(const std::vector<RigSeries>& records, const R
       RigColumn column = drifting.column;
       column.time = place == 0 ? RigColumn::Time::kSlope : RigColumn::Time::kStep;
       column.at = static_cast<double>(place) / kStepPlaces;
-      RigFit fit = fit_of(records, base, {column});
+      RigFit fit = best_fit(records, base, {column});
       if (!fit.ok || fit.held_out_nmse >= best.fit.held_out_nmse) continue;
       best.fit = std::move(fit);
       best.columns = {column};

@@ -15,6 +15,10 @@ struct RigTrialBase {
   double ridge{0.0};
 };
 
+/// The best fit of all ways to write sign v, with `more` columns beside.
+[[nodiscard]] RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base,
+                              const std::vector<RigColumn>& more = {});
+
 /// An effect that is no column of the motion as it was measured: another instant, or a law that
 /// changes over the record.
 struct RigTrial {

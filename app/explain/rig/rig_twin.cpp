@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/explain/rig/rig_trials.hpp"
 #include "dampline/rig/rig_motion.hpp"
 #include "sim_hw/random.hpp"
 
@@ -76,28 +77,17 @@ Eigen::VectorXd force_of(const RigLaw& law, const RigSeries& motion) {
   return out;
 }
 
-/// Of all ways to write sign v, the one that the estimator would take.
+/// What the estimator would leave, which takes the best of all ways to write sign v.
 double left_of(const std::vector<RigSeries>& twins, const RigLaw& law) {
-  std::vector<RigColumn> columns;
-  ColumnSet others;
-  bool has_sign = false;
+  RigTrialBase base;
+  base.ridge = law.ridge;
   for (const RigColumn& c : law.columns) {
-    has_sign = has_sign || is_sign(c, law);
-    if (is_sign(c, law)) continue;
-    others.push_back(static_cast<Eigen::Index>(columns.size()));
-    columns.push_back(c);
+    if (is_sign(c, law))
+      base.friction = law.friction;
+    else
+      base.columns.push_back(c);
   }
-  const auto first = static_cast<Eigen::Index>(columns.size());
-  if (has_sign) columns.insert(columns.end(), law.friction.begin(), law.friction.end());
-  const RigEvidence evidence{columns, twins};
-  double least = 0.0;
-  for (std::size_t w = 0; w < (has_sign ? law.friction.size() : 1); ++w) {
-    ColumnSet set = others;
-    if (has_sign) set.push_back(first + static_cast<Eigen::Index>(w));
-    const RigFit fit = evidence.fit(set, law.ridge);
-    if (fit.ok && (least == 0.0 || fit.held_out_nmse < least)) least = fit.held_out_nmse;
-  }
-  return least;
+  return best_fit(twins, base).held_out_nmse;
 }
 
 /// As they are seen: the white part of the force's noise.
@@ -105,45 +95,14 @@ double force_noise(const RigSeries& record, const Eigen::VectorXd& force) {
   return std::min(white_noise(record.force_n), white_noise(record.force_n - force));
 }
 
-}  // namespace
-
-double resolution_of(const Eigen::VectorXd& values) {
-  const double least = kFewestStepShare * (values.maxCoeff() - values.minCoeff());
-  std::vector<double> differences;
-  for (Eigen::Index i = 1; i < values.size(); ++i) {
-    const double d = std::abs(values[i] - values[i - 1]);
-    if (d > least) differences.push_back(d);
-  }
-  if (differences.size() < 10) return 0.0;
-  double step = *std::min_element(differences.begin(), differences.end());
-  const auto whole = std::count_if(differences.begin(), differences.end(), [step](double d) {
-    const double steps = d / step;
-    return std::abs(steps - std::round(steps)) < kWhole * std::max(1.0, 0.1 * steps);
-  });
-  const auto count = static_cast<double>(differences.size());
-  const bool varied = *std::max_element(differences.begin(), differences.end()) > 1.5 * step;
-  return varied && static_cast<double>(whole) > kMostlyWhole * count ? step : 0.0;
-}
-
-double white_noise(const Eigen::VectorXd& values) {
-  std::vector<double> fourth;
-  for (Eigen::Index i = 4; i < values.size(); ++i)
-    fourth.push_back(std::abs(values[i] - 4.0 * values[i - 1] + 6.0 * values[i - 2] -
-                              4.0 * values[i - 3] + values[i - 4]));
-  if (fourth.empty()) return 0.0;
-  const auto middle = fourth.begin() + static_cast<std::ptrdiff_t>(fourth.size() / 2);
-  std::nth_element(fourth.begin(), middle, fourth.end());
-  return std::max(kFourthToSigma * *middle, resolution_of(values) / std::sqrt(12.0));
-}
-
-RigSeries rig_twin(const RigSeries& record, const RigLaw& law, std::uint64_t seed) {
-  const RigSeries truth = true_motion(record);
-  const Eigen::VectorXd force = force_of(law, truth);
+/// The record once more: the force that a law makes of a known motion, measured.
+RigSeries twin_of(const RigSeries& record, const RigSeries& truth, const Eigen::VectorXd& force,
+                  double force_noise_n, std::uint64_t seed) {
   sim::Random noise{seed, sim::Stream::kSensors};
   const double step_m = resolution_of(record.deflection_m);
   const double step_n = resolution_of(record.force_n);
   const double noise_m = white_part(record.noise_m, step_m);
-  const double noise_n = white_part(force_noise(record, force), step_n);
+  const double noise_n = white_part(force_noise_n, step_n);
   const double noise_mps = record.config.velocity_measured ? white_noise(record.velocity_mps) : 0.0;
   const double shift_m = step_m * (noise.uniform() - 0.5);  // other roundings than the record's
   RigMotionEstimator estimator{record.config};
@@ -178,15 +137,48 @@ RigSeries rig_twin(const RigSeries& record, const RigLaw& law, std::uint64_t see
   return twin;
 }
 
+}  // namespace
+
+double resolution_of(const Eigen::VectorXd& values) {
+  const double least = kFewestStepShare * (values.maxCoeff() - values.minCoeff());
+  std::vector<double> differences;
+  for (Eigen::Index i = 1; i < values.size(); ++i) {
+    const double d = std::abs(values[i] - values[i - 1]);
+    if (d > least) differences.push_back(d);
+  }
+  if (differences.size() < 10) return 0.0;
+  double step = *std::min_element(differences.begin(), differences.end());
+  const auto whole = std::count_if(differences.begin(), differences.end(), [step](double d) {
+    const double steps = d / step;
+    return std::abs(steps - std::round(steps)) < kWhole * std::max(1.0, 0.1 * steps);
+  });
+  const auto count = static_cast<double>(differences.size());
+  const bool varied = *std::max_element(differences.begin(), differences.end()) > 1.5 * step;
+  return varied && static_cast<double>(whole) > kMostlyWhole * count ? step : 0.0;
+}
+
+double white_noise(const Eigen::VectorXd& values) {
+  std::vector<double> fourth;
+  for (Eigen::Index i = 4; i < values.size(); ++i)
+    fourth.push_back(std::abs(values[i] - 4.0 * values[i - 1] + 6.0 * values[i - 2] -
+                              4.0 * values[i - 3] + values[i - 4]));
+  if (fourth.empty()) return 0.0;
+  const auto middle = fourth.begin() + static_cast<std::ptrdiff_t>(fourth.size() / 2);
+  std::nth_element(fourth.begin(), middle, fourth.end());
+  return std::max(kFourthToSigma * *middle, resolution_of(values) / std::sqrt(12.0));
+}
+
 RigFloor rig_floor(const std::vector<RigSeries>& records, const RigLaw& law) {
   RigFloor out;
   std::vector<RigSeries> twins;
   std::uint64_t seed = kSeed;
   double noise_nmse = 0.0;
   for (const RigSeries& record : records) {
-    twins.push_back(rig_twin(record, law, seed++));
+    const RigSeries truth = true_motion(record);
+    const Eigen::VectorXd force = force_of(law, truth);
+    const double noise_n = force_noise(record, force);
+    twins.push_back(twin_of(record, truth, force, noise_n, seed++));
     if (twins.back().size() < record.size() / 2) return out;
-    const double noise_n = force_noise(record, force_of(law, true_motion(record)));
     const double variance = (record.force_n.array() - record.force_n.mean()).square().mean();
     noise_nmse += noise_n * noise_n / (variance * static_cast<double>(records.size()));
   }

@@ -23,15 +23,13 @@ struct RigLaw {
   double ridge{0.0};
 };
 
-/// The record that the law alone would have made: on the measured motion, smoothed, measured again
-/// with the record's own noise and resolution.
-[[nodiscard]] RigSeries rig_twin(const RigSeries& record, const RigLaw& law, std::uint64_t seed);
-
 struct RigFloor {
   double nmse{0.0};         ///< held out, mean of the records; 0: not known
   double noise_share{0.0};  ///< of it, what the noise of the force makes
 };
-/// What the same estimator leaves of the twins of all records, which no effect can take away.
+/// What the same estimator leaves of the twins of all records, which no effect can take away. A
+/// twin is the record that the law alone would have made: on the measured motion, smoothed,
+/// measured again with the record's own noise and resolution.
 [[nodiscard]] RigFloor rig_floor(const std::vector<RigSeries>& records, const RigLaw& law);
 
 }  // namespace dampline::app

@@ -113,7 +113,7 @@ void Explainer::add_runner_up(const Model& model, const Candidate& candidate, co
       block_t(now, fit, evidence_.count), coefficient_t(fit, now)};
 }
 
-bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
+bool Explainer::forward(Explanation& out, const ModelFit& now) noexcept {
   if (out.step_count == Explanation::kMostSteps) return false;
   BestOfEffects best;
   try_all(out.model, now, best);
@@ -144,7 +144,6 @@ bool Explainer::forward(Explanation& out, ModelFit& now) noexcept {
     out.model = out.model.with(step.chosen);
     out.step[out.step_count++] = step;
     out.rejected = {};
-    now = fitter_.fit(out.model);
     return true;
   }
   return false;

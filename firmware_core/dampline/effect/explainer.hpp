@@ -64,7 +64,7 @@ class Explainer {
   /// Fits a model, weighs the scales by what it leaves, and gives late and wrongly scaled channels
   /// the friction and spring that the whole model has.
   [[nodiscard]] ModelFit settle(const GramStore& store, Model& model) noexcept;
-  bool forward(Explanation& out, ModelFit& now) noexcept;
+  bool forward(Explanation& out, const ModelFit& now) noexcept;
   [[nodiscard]] Step step_of(const Model& model, const Best* const* order, std::size_t found,
                              std::size_t c, const ModelFit& now) noexcept;
   bool readjust(Explanation& out, ModelFit& now) noexcept;

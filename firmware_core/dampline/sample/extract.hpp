@@ -76,34 +76,6 @@ struct SignalBytes {
   return bits;
 }
 
-/// The signal's bits, right-aligned. kMalformed when the frame is too short for it.
-/// Precondition: is_valid(signal). At most nine steps.
-[[nodiscard]] constexpr Result<std::uint64_t> extract_bits(const SignalLayout& signal,
-                                                           const CanFrame& frame) noexcept {
-  if (bytes_needed(signal) > frame.length) return Errc::kMalformed;
-  const unsigned first = signal.start_bit / 8U;
-  const unsigned bit = signal.start_bit % 8U;
-  const unsigned unused = 64U - signal.length;
-  const bool intel = signal.order == ByteOrder::kIntel;
-  const unsigned before = intel ? bit : 7U - bit;  // bits of the word in front of the signal
-  if (before > unused || first + 8U > frame.data.size()) {
-    return gather_bits(signal, frame) << unused >> unused;
-  }
-  const std::uint8_t* const bytes = frame.data.data() + first;
-  if (intel) return intel_word(bytes) << (unused - before) >> unused;
-  return motorola_word(bytes) << before >> unused;
-}
-
-/// The raw number, sign-extended where the signal is signed. An unsigned number of 64 bits wraps.
-[[nodiscard]] constexpr Result<std::int64_t> extract_raw(const SignalLayout& signal,
-                                                         const CanFrame& frame) noexcept {
-  const Result<std::uint64_t> bits = extract_bits(signal, frame);
-  if (!bits.ok()) return bits.error();
-  const unsigned unused = 64U - signal.length;
-  if (!signal.is_signed) return static_cast<std::int64_t>(bits.value());
-  return static_cast<std::int64_t>(bits.value() << unused) >> unused;
-}
-
 /// physical = raw * scale + offset, as a DBC file defines it.
 [[nodiscard]] constexpr double to_physical(const SignalLayout& signal, std::int64_t raw) noexcept {
   const bool wraps = !signal.is_signed && signal.length == 64;
@@ -112,16 +84,7 @@ struct SignalBytes {
   return number * signal.scale + signal.offset;
 }
 
-/// The signal's physical value. kMalformed when the frame is too short for it.
-[[nodiscard]] constexpr Result<double> extract_physical(const SignalLayout& signal,
-                                                        const CanFrame& frame) noexcept {
-  const Result<std::int64_t> raw = extract_raw(signal, frame);
-  if (!raw.ok()) return raw.error();
-  return to_physical(signal, raw.value());
-}
-
-/// The functions above for one signal of many frames: what they work out of the layout is worked
-/// out once.
+/// Reads one signal of many frames: what follows from the layout is worked out once.
 class SignalReader {
  public:
   /// Precondition: is_valid(signal).
@@ -141,16 +104,16 @@ class SignalReader {
   [[nodiscard]] constexpr bool fits(const CanFrame& frame) const noexcept {
     return needed_ <= frame.length;
   }
-  /// As extract_bits() and extract_raw(). Precondition: fits(frame).
+  /// Right-aligned. Precondition: fits(frame).
   [[nodiscard]] constexpr std::uint64_t bits(const CanFrame& frame) const noexcept {
-    if (!is_word_) return gather_bits(signal_, frame) << unused_ >> unused_;
     return top(frame) >> unused_;
   }
+  /// Sign-extended where the signal is signed. An unsigned number of 64 bits wraps.
+  /// Precondition: fits(frame).
   [[nodiscard]] constexpr std::int64_t raw(const CanFrame& frame) const noexcept {
-    const std::uint64_t top_aligned =
-        is_word_ ? top(frame) : gather_bits(signal_, frame) << unused_;
-    if (signal_.is_signed) return static_cast<std::int64_t>(top_aligned) >> unused_;
-    return static_cast<std::int64_t>(top_aligned >> unused_);
+    const std::uint64_t aligned = top(frame);
+    if (signal_.is_signed) return static_cast<std::int64_t>(aligned) >> unused_;
+    return static_cast<std::int64_t>(aligned >> unused_);
   }
   [[nodiscard]] constexpr double physical(std::int64_t raw) const noexcept {
     return to_physical(signal_, raw);
@@ -159,6 +122,7 @@ class SignalReader {
  private:
   /// The signal's bits at the top of a word.
   [[nodiscard]] constexpr std::uint64_t top(const CanFrame& frame) const noexcept {
+    if (!is_word_) return gather_bits(signal_, frame) << unused_;
     const std::uint8_t* const bytes = frame.data.data() + first_;
     return (signal_.order == ByteOrder::kIntel ? intel_word(bytes) : motorola_word(bytes)) << left_;
   }
@@ -170,5 +134,30 @@ class SignalReader {
   unsigned left_{0};
   bool is_word_{false};  // eight bytes in a row hold it whole
 };
+
+/// The signal's bits, right-aligned. kMalformed when the frame is too short for it.
+/// Precondition: is_valid(signal). At most nine steps.
+[[nodiscard]] constexpr Result<std::uint64_t> extract_bits(const SignalLayout& signal,
+                                                           const CanFrame& frame) noexcept {
+  const SignalReader reader{signal};
+  if (!reader.fits(frame)) return Errc::kMalformed;
+  return reader.bits(frame);
+}
+
+/// The raw number, sign-extended where the signal is signed. An unsigned number of 64 bits wraps.
+[[nodiscard]] constexpr Result<std::int64_t> extract_raw(const SignalLayout& signal,
+                                                         const CanFrame& frame) noexcept {
+  const SignalReader reader{signal};
+  if (!reader.fits(frame)) return Errc::kMalformed;
+  return reader.raw(frame);
+}
+
+/// The signal's physical value. kMalformed when the frame is too short for it.
+[[nodiscard]] constexpr Result<double> extract_physical(const SignalLayout& signal,
+                                                        const CanFrame& frame) noexcept {
+  const Result<std::int64_t> raw = extract_raw(signal, frame);
+  if (!raw.ok()) return raw.error();
+  return to_physical(signal, raw.value());
+}
 
 }  // namespace dampline
