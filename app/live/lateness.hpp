@@ -30,6 +30,17 @@ class Lateness {
     }
     return max_ns_;
   }
+  /// Calls `take(from_ns, to_ns, count)` for every bin that holds something, in ascending order;
+  /// `to` is the first duration above it.
+  template <class Take>
+  void for_each(Take take) const {
+    std::uint64_t from_ns = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      const std::uint64_t to_ns = upper_edge(i) + 1;
+      if (bins_[i] > 0) take(from_ns, to_ns, bins_[i]);
+      from_ns = to_ns;
+    }
+  }
 
  private:
   static constexpr unsigned kBitsPerOctave = 4;

@@ -33,9 +33,13 @@ void describe_live(const LiveStatus& status, const LiveSurroundings& around, Run
   LiveFigures live;
   live.state = around.state;
   live.lateness_p50_us = microseconds(status.lateness.quantile_ns(0.5));
+  live.lateness_p90_us = microseconds(status.lateness.quantile_ns(0.9));
   live.lateness_p99_us = microseconds(status.lateness.quantile_ns(0.99));
   live.lateness_p999_us = microseconds(status.lateness.quantile_ns(0.999));
   live.lateness_max_us = microseconds(status.lateness.max_ns());
+  status.lateness.for_each([&](std::uint64_t from_ns, std::uint64_t to_ns, std::uint64_t frames) {
+    result.lateness.push_back({microseconds(from_ns), microseconds(to_ns), frames});
+  });
   live.cycle_slips = status.cycle_slips;
   live.minor_faults = status.faults.minor;
   live.major_faults = status.faults.major;

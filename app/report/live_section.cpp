@@ -8,10 +8,6 @@
 namespace dampline::app {
 namespace {
 
-std::string microseconds(double us) {
-  return us < 1e4 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.0f} ms", 1e-3 * us);
-}
-
 std::string mebibytes(std::uint64_t bytes) {
   return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
@@ -21,11 +17,13 @@ std::string mebibytes(std::uint64_t bytes) {
 std::string live_section(const RunResult& result) {
   if (!result.live) return "";
   const LiveFigures& f = *result.live;
-  const std::string lateness = fmt::format(
-      "{} / {} / {} / {}", microseconds(f.lateness_p50_us), microseconds(f.lateness_p99_us),
-      microseconds(f.lateness_p999_us), microseconds(f.lateness_max_us));
+  const std::string lateness =
+      fmt::format("{} / {} / {} / {} / {}", format_microseconds(f.lateness_p50_us),
+                  format_microseconds(f.lateness_p90_us), format_microseconds(f.lateness_p99_us),
+                  format_microseconds(f.lateness_p999_us), format_microseconds(f.lateness_max_us));
   std::vector<std::vector<std::string>> rows{
-      {"lateness", lateness, "from a frame's stamp to its result: p50 / p99 / p99.9 / largest"},
+      {"lateness", lateness,
+       "from a frame's stamp to its result: p50 / p90 / p99 / p99.9 / largest"},
       {"cycle slips", format_count(f.cycle_slips),
        "frames later than one sampling period; no result depends on it"},
       {"page faults", fmt::format("{} + {}", f.minor_faults, f.major_faults),

@@ -47,6 +47,9 @@ constexpr std::string_view kEventText =
     "What happened beside the samples: markers and pulses of the digital lines, and what befell "
     "the "
     "bus and the recording. The numbers are in events.csv.";
+constexpr std::string_view kLatenessText =
+    "How long after a frame's stamp its result was there. Both axes are logarithmic; a bin is a "
+    "sixteenth of a factor of two. The numbers are in lateness.csv.";
 constexpr std::string_view kRigMotionText = "An excerpt of the measured motion.";
 constexpr std::string_view kForceText =
     "An excerpt of the measured force beside the force of the fitted model, over time and over "
@@ -141,7 +144,9 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
   body += section(
       "Motion", artist.figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));
   body += section("Events", artist.figure(plot_events(result), "events", kEventText));
-  body += section("How the acquisition kept up", live_section(result));
+  body += section(
+      "How the acquisition kept up",
+      artist.figure(plot_lateness(result), "lateness", kLatenessText) + live_section(result));
   body += section("What was left out, and why",
                   artist.figure(plot_excluded(result), "excluded", "") + excluded_section(result));
   body += section("Where this comes from", provenance_section(provenance, run_toml));

@@ -30,5 +30,7 @@ struct PlotScript {
 [[nodiscard]] PlotScript plot_events(const RunResult& result);
 /// One row per reason over the whole record.
 [[nodiscard]] PlotScript plot_excluded(const RunResult& result);
+/// How late the frames of a live run were, with p50 to the largest written in.
+[[nodiscard]] PlotScript plot_lateness(const RunResult& result);
 
 }  // namespace dampline::app

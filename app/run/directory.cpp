@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
 /// What an earlier run may have left and this one may not write.
-constexpr std::array<std::string_view, 17> kRunFiles{
-    "parameters.json", "curve.csv",       "densities.csv",    "phase.json",   "state.dls",
-    "report.html",     "convergence.csv", "excluded.csv",     "motion.csv",   "force.csv",
-    "events.csv",      "live.json",       "explanation.json", "residual.csv", "loops.csv",
-    "law.csv",         "prediction.csv"};
+constexpr std::array<std::string_view, 18> kRunFiles{
+    "parameters.json", "curve.csv",       "densities.csv", "phase.json",       "state.dls",
+    "report.html",     "convergence.csv", "excluded.csv",  "motion.csv",       "force.csv",
+    "events.csv",      "lateness.csv",    "live.json",     "explanation.json", "residual.csv",
+    "loops.csv",       "law.csv",         "prediction.csv"};
 /// What a live run writes before its end: an interrupted one is continued beside it.
 constexpr std::array<std::string_view, 2> kLiveFiles{"blackbox", "live.json"};
 

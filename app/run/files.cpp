@@ -65,6 +65,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   if (!result.force.empty()) directory.write("force.csv", to_csv(result.force));
   directory.write("excluded.csv", to_csv(result.excluded));
   if (!result.events.empty()) directory.write("events.csv", to_csv(result.events));
+  if (!result.lateness.empty()) directory.write("lateness.csv", to_csv(result.lateness));
   stage_evidence(result.evidence, directory);
   directory.write("run.toml", files.run_toml);
 }
@@ -88,6 +89,7 @@ RunFiles read_files(const std::filesystem::path& run) {
   files.result.force = read_extra(run / "force.csv", read_force);
   files.result.excluded = read_extra(run / "excluded.csv", read_excluded);
   files.result.events = read_extra(run / "events.csv", read_events);
+  files.result.lateness = read_extra(run / "lateness.csv", read_lateness);
   files.result.evidence = read_evidence(run);
   return files;
 }

@@ -25,6 +25,7 @@ Json live(const LiveFigures& f) {
   return {{"state", f.state},
           {"lateness_us",
            {{"p50", f.lateness_p50_us},
+            {"p90", f.lateness_p90_us},
             {"p99", f.lateness_p99_us},
             {"p99.9", f.lateness_p999_us},
             {"max", f.lateness_max_us}}},
@@ -45,6 +46,7 @@ LiveFigures read_live(const Json& json) {
   f.state = json.at("state");
   const Json& lateness = json.at("lateness_us");
   f.lateness_p50_us = lateness.at("p50");
+  f.lateness_p90_us = lateness.at("p90");
   f.lateness_p99_us = lateness.at("p99");
   f.lateness_p999_us = lateness.at("p99.9");
   f.lateness_max_us = lateness.at("max");

@@ -81,6 +81,7 @@ struct RunEvent {
 struct LiveFigures {
   std::string state;  ///< "waiting", "identifying", "degraded", "fault" or "ended"
   double lateness_p50_us{0.0};
+  double lateness_p90_us{0.0};
   double lateness_p99_us{0.0};
   double lateness_p999_us{0.0};
   double lateness_max_us{0.0};
@@ -94,6 +95,13 @@ struct LiveFigures {
   bool recording{false};
   std::uint64_t recorded_bytes{0};
   std::uint64_t records_lost{0};
+};
+
+/// A bin of the histogram of lateness, with how many frames were so late.
+struct LatenessRow {
+  double from_us{0.0};
+  double to_us{0.0};
+  std::uint64_t frames{0};
 };
 
 /// What an identification hands to the run directory. The order of `parameters`, `counts` and
@@ -127,7 +135,8 @@ struct RunResult {
   std::uint64_t events_more{0};    ///< events beyond the cap
   DataFaults faults;               ///< of a truck record
   std::optional<LiveFigures> live;
-  Evidence evidence;  ///< of an explanation
+  std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out
+  Evidence evidence;                  ///< of an explanation
 };
 
 }  // namespace dampline::app

@@ -73,6 +73,13 @@ std::string to_csv(const std::vector<RunEvent>& events) {
   return out;
 }
 
+std::string to_csv(const std::vector<LatenessRow>& lateness) {
+  std::string out = "from_us,to_us,frames\n";
+  for (const LatenessRow& r : lateness)
+    out += fmt::format("{:.9g},{:.9g},{}\n", r.from_us, r.to_us, r.frames);
+  return out;
+}
+
 void read_curve(std::string_view text, const std::string& origin, RunResult& result) {
   read_rows(text, origin, [&](const Cells& c) {
     result.curve.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)),
@@ -148,6 +155,15 @@ std::vector<RunEvent> read_events(std::string_view text, const std::string& orig
                       static_cast<std::int64_t>(number(c.at(3)))});
   });
   return events;
+}
+
+std::vector<LatenessRow> read_lateness(std::string_view text, const std::string& origin) {
+  std::vector<LatenessRow> lateness;
+  read_rows(text, origin, [&](const Cells& c) {
+    lateness.push_back(
+        {number(c.at(0)), number(c.at(1)), static_cast<std::uint64_t>(number(c.at(2)))});
+  });
+  return lateness;
 }
 
 }  // namespace dampline::app

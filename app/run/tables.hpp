@@ -19,6 +19,7 @@ namespace dampline::app {
 [[nodiscard]] std::string to_csv(const std::vector<ForceRow>& force);
 [[nodiscard]] std::string to_csv(const std::vector<Excluded>& excluded);
 [[nodiscard]] std::string to_csv(const std::vector<RunEvent>& events);
+[[nodiscard]] std::string to_csv(const std::vector<LatenessRow>& lateness);
 
 /// Fills the curve, and the curves of the methods of `result`, which are there already.
 void read_curve(std::string_view text, const std::string& origin, RunResult& result);
@@ -29,5 +30,7 @@ void read_curve(std::string_view text, const std::string& origin, RunResult& res
 [[nodiscard]] std::vector<ForceRow> read_force(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<Excluded> read_excluded(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<RunEvent> read_events(std::string_view text, const std::string& origin);
+[[nodiscard]] std::vector<LatenessRow> read_lateness(std::string_view text,
+                                                     const std::string& origin);
 
 }  // namespace dampline::app

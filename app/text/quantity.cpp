@@ -45,6 +45,10 @@ std::string format_count(std::uint64_t count, const std::string& separator) {
   return group(fmt::format("{}", count), separator);
 }
 
+std::string format_microseconds(double us) {
+  return us < 1e4 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.0f} ms", 1e-3 * us);
+}
+
 std::string format_duration(double seconds) {
   if (seconds < 60.0) return fmt::format("{:.3g} s", seconds);
   const auto whole = static_cast<std::int64_t>(std::llround(seconds));

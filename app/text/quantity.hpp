@@ -16,6 +16,9 @@ struct QuantityText {
 /// 1234567 as "1 234 567", with `separator` between the groups.
 [[nodiscard]] std::string format_count(std::uint64_t count, const std::string& separator = " ");
 
+/// Microseconds as "238 µs", above 10,000 as "12 ms".
+[[nodiscard]] std::string format_microseconds(double us);
+
 /// Seconds as "45 s", "12 min 30 s", "5 h 12 min".
 [[nodiscard]] std::string format_duration(double seconds);
 

@@ -98,4 +98,22 @@ inline RunResult fake_result() {
   return r;
 }
 
+/// How a live run kept up: frames around 200 us, and one that was 5.6 ms late.
+inline void make_live(RunResult& r) {
+  LiveFigures live;
+  live.state = "ended";
+  live.lateness_p50_us = 238.0;
+  live.lateness_p90_us = 301.0;
+  live.lateness_p99_us = 557.0;
+  live.lateness_p999_us = 1900.0;
+  live.lateness_max_us = 5600.0;
+  r.live = live;
+  for (int i = 0; i < 40; ++i) {
+    const double from_us = 96.0 * std::exp2(i / 16.0);
+    r.lateness.push_back({from_us, 96.0 * std::exp2((i + 1) / 16.0),
+                          std::uint64_t(1.0 + 9000.0 * std::exp(-0.02 * (i - 21) * (i - 21)))});
+  }
+  r.lateness.push_back({5500.0, 5740.0, 1});
+}
+
 }  // namespace dampline::app

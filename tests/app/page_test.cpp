@@ -47,6 +47,29 @@ TEST(Page, HoldsEverythingAndNeedsNothingElse) {
     EXPECT_THAT(page.html, HasSubstr(label));
 }
 
+TEST(Page, DrawsHowLateTheFramesOfALiveRunWere) {
+  RunResult result = fake_result();
+  make_live(result);
+  const Page page = make_page(result, some_provenance(), "");
+  EXPECT_THAT(page.html, HasSubstr("238 µs / 301 µs / 557 µs / 1900 µs / 5600 µs"));
+  if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot here: the drawings were not looked at";
+  EXPECT_EQ(page.warning, "");
+  EXPECT_EQ(count(page.html, "<svg"), 8U);
+  for (const char* label : {"stamp to its result (µs)", ">frames<", "p50 238 µs", "p90 301 µs",
+                            "p99 557 µs", "p99.9 1900 µs", "largest 5600 µs"})
+    EXPECT_THAT(page.html, HasSubstr(label));
+}
+
+TEST(Page, DrawsLatenessOfNothingAtAll) {
+  RunResult result = fake_result();
+  result.live = LiveFigures{};
+  result.lateness = {{0.0, 0.001, 3}};
+  const Page page = make_page(result, some_provenance(), "");
+  if (!has_gnuplot()) GTEST_SKIP() << "no gnuplot here: the drawings were not looked at";
+  EXPECT_EQ(page.warning, "");
+  EXPECT_EQ(count(page.html, "<svg"), 8U);
+}
+
 TEST(Page, DrawsACurveOfWhichNothingIsResolved) {
   RunResult result = fake_result();
   for (Parameter& p : result.parameters)

@@ -113,6 +113,7 @@ TEST_F(RunDirectoryTest, ReportsAFullDiskAndLeavesNothing) {
 
 TEST_F(RunDirectoryTest, ReadsBackWhatItWrote) {
   RunResult result = fake_result();
+  make_live(result);
   const std::string toml =
       write_run_toml(Config{}, {{"a.log", "record", 12, std::string(64, 'f')}});
   RunDirectory directory{folder_ / "run", false};
@@ -127,6 +128,8 @@ TEST_F(RunDirectoryTest, ReadsBackWhatItWrote) {
   EXPECT_EQ(to_csv(back.result.convergence), to_csv(result.convergence));
   EXPECT_EQ(to_csv(back.result.motion), to_csv(result.motion));
   EXPECT_EQ(to_csv(back.result.excluded), to_csv(result.excluded));
+  EXPECT_EQ(to_csv(back.result.lateness), to_csv(result.lateness));
+  EXPECT_EQ(back.result.lateness.size(), 41U);
   EXPECT_EQ(back.run_toml, toml);
 }
 

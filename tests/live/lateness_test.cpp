@@ -47,5 +47,26 @@ TEST(Lateness, SmallOnesAreExact) {
   }
 }
 
+TEST(Lateness, BinsHoldWhatTheirEdgesSay) {
+  std::mt19937_64 random{8};
+  std::lognormal_distribution<double> spread{6.0, 4.0};  // ns
+  std::vector<std::int64_t> all{0, 1, 15, 16, 17, 31, 32, 1'000'000'000};
+  while (all.size() < 5'000) all.push_back(static_cast<std::int64_t>(spread(random)));
+  Lateness lateness;
+  for (const std::int64_t ns : all) lateness.add(ns);
+  std::uint64_t total = 0;
+  std::uint64_t last_ns = 0;
+  lateness.for_each([&](std::uint64_t from_ns, std::uint64_t to_ns, std::uint64_t count) {
+    const auto inside = std::count_if(all.begin(), all.end(), [&](std::int64_t ns) {
+      return static_cast<std::uint64_t>(ns) >= from_ns && static_cast<std::uint64_t>(ns) < to_ns;
+    });
+    EXPECT_EQ(count, static_cast<std::uint64_t>(inside)) << from_ns << " to " << to_ns;
+    EXPECT_GE(from_ns, last_ns);
+    last_ns = to_ns;
+    total += count;
+  });
+  EXPECT_EQ(total, all.size());
+}
+
 }  // namespace
 }  // namespace dampline::app

@@ -182,6 +182,13 @@ TEST_F(LiveRunTest, PublishesOnTheWayAndTellsWhenTheSignalIsLost) {
   ASSERT_GE(published.size(), 2U);
   EXPECT_EQ(published.back().parameters.at(0).name, "coulomb");
   EXPECT_GT(published.back().live->lateness_max_us, 0.0);
+  std::uint64_t late = 0;
+  for (const LatenessRow& row : found.result.lateness) late += row.frames;
+  std::uint64_t frames = 0;
+  for (const auto& [name, count] : found.result.counts)
+    if (name == "frames") frames = count;
+  EXPECT_GT(frames, 0U);
+  EXPECT_EQ(late, frames);
   std::vector<std::string> names;
   for (const RunEvent& event : found.result.events) names.push_back(event.name);
   EXPECT_THAT(names, ::testing::Contains("signal_lost"));
