@@ -22,7 +22,7 @@ class ConvergenceHistory {
   /// Begins at another tick. Precondition: nothing was added yet.
   void start(std::int64_t first_tick) noexcept { next_ = first_tick + interval_; }
   [[nodiscard]] bool due(std::int64_t tick) const noexcept { return tick >= next_; }
-  void add(std::int64_t tick, const Snapshot& snapshot);
+  void add(std::int64_t tick, const Level& level);
 
   struct Row {
     std::int64_t tick{0};

@@ -128,7 +128,7 @@ void TruckRun::use(const Sample& sample) {
   if (!result.block_closed) return;
   note_block(result.block);
   alarms_.take(result.block, sample.tick, *identifier_);
-  if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->snapshot());
+  if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->level());
 }
 
 void TruckRun::note_block(const BlockReport& block) {
@@ -176,7 +176,8 @@ RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) 
   const TruckView last = view();
   const TruckRecord record = record_of(last, rate, core_.sample_rate_hz, source);
   if (!last.snapshot.valid) fail_unusable(last.snapshot, source);
-  history_.add(newest_tick_, last.snapshot);
+  history_.add(newest_tick_,
+               {last.snapshot.valid, last.snapshot.coulomb_n, last.snapshot.stiffness_npm});
   RunResult result = describe_truck(record, config_.model);
   result.counts.emplace_back("blocks_spoilt", blocks(BlockStatus::kExcludedSpoilt));
   result.latency_s = identifier_->motion_latency_s() + faults_.wait_s();

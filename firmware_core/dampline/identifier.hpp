@@ -64,6 +64,8 @@ class Identifier {
   [[nodiscard]] bool next_report(BlockReport& out) noexcept { return reports_.pop(out); }
 
   [[nodiscard]] Snapshot snapshot() noexcept;
+  /// The level and the stiffness of snapshot() alone, for much less work.
+  [[nodiscard]] Level level() noexcept;
 
   /// The sufficient statistics so far. `out` is some 270 KiB: place it yourself.
   void export_statistics(Statistics& out) noexcept;

@@ -49,6 +49,16 @@ Snapshot Identifier::snapshot() noexcept {
                    {.moving_mass_kg = config_.moving_mass_kg});
 }
 
+Level Identifier::level() noexcept {
+  store_.finish();
+  ScaleFactors total;
+  store_.total_to(total);
+  std::array<const ScaleFactors*, kEntries> entries{};
+  const std::size_t count = store_.entries_to(entries);
+  return summarise_level(header(), total, EntryList{entries}.first(count),
+                         {.moving_mass_kg = config_.moving_mass_kg});
+}
+
 void Identifier::export_statistics(Statistics& out) noexcept {
   store_.finish();
   out.header = header();

@@ -24,6 +24,13 @@ struct CurvePoint {
   std::uint64_t samples{0};  ///< samples whose velocity is nearer to this node than to another
 };
 
+/// Level of friction and stiffness at one moment.
+struct Level {
+  bool valid{false};  ///< false: too little data
+  Estimate coulomb_n;
+  Estimate stiffness_npm;
+};
+
 /// What was taken in and what was left out, in samples unless said otherwise. Monotone.
 struct Counts {
   std::uint64_t samples{0};          ///< given to update()

@@ -138,19 +138,19 @@ TEST(TruckRun, RefusesEffectsThatItCannotIdentify) {
 
 TEST(ConvergenceHistory, StaysBoundedAndCoversTheWholeRecord) {
   ConvergenceHistory history{100, 0};
-  Snapshot snapshot;
-  snapshot.valid = true;
-  std::int64_t snapshots = 0;
+  Level level;
+  level.valid = true;
+  std::int64_t levels = 0;
   for (std::int64_t tick = 1; tick <= 10'000'000; ++tick) {
     if (!history.due(tick)) continue;
-    history.add(tick, snapshot);
-    ++snapshots;
+    history.add(tick, level);
+    ++levels;
   }
   EXPECT_LE(history.rows().size(), ConvergenceHistory::kMost);
   EXPECT_GE(history.rows().size(), ConvergenceHistory::kMost / 2 - 1);
   EXPECT_LT(history.rows().front().tick, 300'000);
   EXPECT_GT(history.rows().back().tick, 9'800'000);
-  EXPECT_LT(snapshots, 1500) << "snapshots cost milliseconds each";
+  EXPECT_LT(levels, 1500) << "levels cost a fraction of a millisecond each";
 }
 
 TEST(ExcludedList, JoinsNeighboursAndStaysBounded) {

@@ -56,6 +56,23 @@ class Synthetic {
   std::normal_distribution<double> normal_;
 };
 
+TEST(MappedColumns, AreTheProductWithTheWholeMap) {
+  Synthetic data{3};
+  ScaleFactors factors;
+  data.add(factors, 40);
+  ColumnMap<3> map = ColumnMap<3>::Zero();
+  map(4, 0) = 1.0;
+  map(5, 0) = 0.25;
+  map(3, 0) = -0.25;
+  map(kStiffnessColumn, 1) = 2.0;
+  map(kTargetColumn, 3) = 1.0;  // the third unknown has no column
+  const MappedColumns<3> columns{map};
+  for (int i = 0; i < kRowColumns; ++i) {
+    const Eigen::Matrix<double, 4, 1> whole = map.transpose() * factors.factor[1].row(i);
+    EXPECT_LT((columns.row_of(factors.factor[1], i) - whole).norm(), 1e-15 * (1.0 + whole.norm()));
+  }
+}
+
 TEST(WeightedFit, RecoversTheTruthWhereScalesDifferInTheirNoise) {
   Synthetic data{1};
   ScaleFactors factors;
@@ -205,7 +222,7 @@ TEST(HeldOutNmse, IsTheNoisesShareAndNotLessThanTheFittedError) {
   for (const ScaleFactors& entry : entries) list.push_back(&entry);
   const auto map = force_and_stiffness();
   const Fit fit = weighted_fit<kUnknowns>(total, map, kAll);
-  const double held_out = held_out_nmse_of<kUnknowns>(fit, EntryList{list}, map, 5);
+  const double held_out = held_out_nmse_of<kUnknowns, 5>(fit, EntryList{list}, map);
   EXPECT_GE(held_out, fit.weighted_residual / fit.weighted_total);
   // t has F^2 + (0.01 k)^2 = 0.89 of signal; per scale sigma^2 of noise, weights 1 / sigma^2.
   double weighted_signal = 0.0;

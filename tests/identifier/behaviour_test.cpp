@@ -92,6 +92,25 @@ TEST(Identifier, KnowsARowsLatency) {
   EXPECT_LT(identifier->row_latency_s(), 3.5);
 }
 
+TEST(Identifier, ItsLevelIsThatOfItsSnapshotToTheLastBit) {
+  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  int compared = 0;
+  std::size_t samples = 0;
+  for (const Sample& sample : laden_record()) {
+    static_cast<void>(identifier->update(sample));
+    if (++samples % 3000 != 0) continue;
+    const Snapshot snapshot = identifier->snapshot();
+    const Level level = identifier->level();
+    EXPECT_EQ(level.valid, snapshot.valid);
+    EXPECT_EQ(level.coulomb_n.value, snapshot.coulomb_n.value);
+    EXPECT_EQ(level.coulomb_n.std, snapshot.coulomb_n.std);
+    EXPECT_EQ(level.stiffness_npm.value, snapshot.stiffness_npm.value);
+    EXPECT_EQ(level.stiffness_npm.std, snapshot.stiffness_npm.std);
+    if (level.valid) ++compared;
+  }
+  EXPECT_GE(compared, 7);
+}
+
 TEST(Identifier, PausesAtAStandstill) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
   config.speed.standstills[0] = {60.0, 90.0};

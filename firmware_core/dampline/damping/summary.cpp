@@ -52,6 +52,17 @@ struct LawResult {
   bool ok{false};
 
   static LawResult make(const Context& c) noexcept {
+    LawResult out = without_errors(c);
+    if (!out.ok) return out;
+    out.nmse = out.law.fit.weighted_residual / out.law.fit.weighted_total;
+    out.held_out_nmse = c.entries.size() >= kFolds ? held_out_nmse_of<Model::kUnknowns, kFolds>(
+                                                         out.law.fit, c.entries, out.law.map)
+                                                   : std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
+
+  /// Both errors left out.
+  static LawResult without_errors(const Context& c) noexcept {
     LawResult out;
     out.law = Profile::make(c.total, kAllScales);
     const auto long_law = Profile::make(c.total, kLongScales);
@@ -66,11 +77,6 @@ struct LawResult {
                                         kStiffnessFloor * stiffness)};
     out.width = {out.law.width_mps(), std[Model::kWidthChange] / coulomb * out.law.span_mps()};
     if constexpr (Viscous) out.viscous = {theta[Model::kViscous], std[Model::kViscous]};
-    out.nmse = out.law.fit.weighted_residual / out.law.fit.weighted_total;
-    out.held_out_nmse =
-        c.entries.size() >= kFolds
-            ? held_out_nmse_of<Model::kUnknowns>(out.law.fit, c.entries, out.law.map, kFolds)
-            : std::numeric_limits<double>::quiet_NaN();
     return out;
   }
 
@@ -123,6 +129,15 @@ void fill_curve(const Context& c, const LawProfile<true>& law, Snapshot& out) no
   }
 }
 
+Context context_of(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
+                   const SummaryConfig& config) noexcept {
+  return {.header = header,
+          .total = total,
+          .entries = entries,
+          .mass_kg = config.moving_mass_kg,
+          .blocks_factor = short_record_factor(static_cast<double>(entries.size()))};
+}
+
 void fill_motion(const StatisticsHeader& header, Snapshot& out) noexcept {
   const VelocityCounts& v = header.velocity;
   if (v.moving > 0) out.velocity_rms_mps = std::sqrt(v.sum_squares / static_cast<double>(v.moving));
@@ -144,11 +159,7 @@ Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, En
   }
   fill_motion(header, out);
   if (entries.size() < kFewestEntries) return out;
-  const Context context{.header = header,
-                        .total = total,
-                        .entries = entries,
-                        .mass_kg = config.moving_mass_kg,
-                        .blocks_factor = short_record_factor(static_cast<double>(entries.size()))};
+  const Context context = context_of(header, total, entries, config);
   const auto law = LawResult<false>::make(context);
   const auto viscous_law = LawResult<true>::make(context);
   out.valid = law.ok && viscous_law.ok;
@@ -160,6 +171,17 @@ Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, En
   out.std_is_lower_bound = sticks || law.width.value > kValidWidthMps;
   out.std_with_viscous_is_lower_bound = sticks || viscous_law.width.value > kValidWidthMps;
   return out;
+}
+
+Level summarise_level(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
+                      const SummaryConfig& config) noexcept {
+  if (entries.size() < kFewestEntries) return {};
+  const Context context = context_of(header, total, entries, config);
+  const auto law = LawResult<false>::without_errors(context);
+  if (!law.ok) return {};
+  return {.valid = true,
+          .coulomb_n = context.mass_kg * law.coulomb,
+          .stiffness_npm = context.mass_kg * law.stiffness};
 }
 
 Snapshot summarise(const Statistics& statistics, const SummaryConfig& config) noexcept {

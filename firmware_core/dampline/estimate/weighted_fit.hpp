@@ -6,17 +6,13 @@
 #include <cstddef>
 
 #include "dampline/estimate/cholesky.hpp"
+#include "dampline/estimate/mapped_columns.hpp"
 #include "dampline/estimate/statistics.hpp"
 
 namespace dampline {
 
 /// Which scales take part.
 using ScaleMask = std::array<bool, kScales>;
-
-/// A linear model of Q unknowns as columns of the rows: column j of the map says how regressor j is
-/// made of the row's columns; the last column picks the target.
-template <int Q>
-using ColumnMap = Eigen::Matrix<double, kRowColumns, Q + 1>;
 
 /// Least squares over all scales, each weighted by the inverse of its own residual variance
 /// (fixed-point iteration, METHODS: feasible generalised least squares).
@@ -43,9 +39,11 @@ using ScaleInformation = std::array<Information<Q + 1>, kScales>;
 template <int Q>
 ScaleInformation<Q> map_scales(const ScaleFactors& factors, const ColumnMap<Q>& map,
                                const ScaleMask& mask) noexcept {
+  const MappedColumns<Q> columns{map};
   ScaleInformation<Q> out{};
   for (std::size_t s = 0; s < kScales; ++s) {
-    if (mask[s] && factors.rows[s] > 0.0) factors.factor[s].add_mapped(map, 1.0, out[s]);
+    if (!mask[s] || !(factors.rows[s] > 0.0)) continue;
+    for (int i = 0; i < kRowColumns; ++i) out[s].absorb(columns.row_of(factors.factor[s], i));
   }
   return out;
 }
@@ -115,6 +113,7 @@ Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, EntryLis
                                              const ColumnMap<Q>& map) noexcept {
   using Vector = Eigen::Matrix<double, Q, 1>;
   using Square = Eigen::Matrix<double, Q, Q>;
+  const MappedColumns<Q> columns{map};
   Square meat = Square::Zero();
   Vector last = Vector::Zero();
   for (const ScaleFactors* entry : entries) {
@@ -122,8 +121,7 @@ Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, EntryLis
     for (std::size_t s = 0; s < kScales; ++s) {
       if (!(fit.weight[s] > 0.0)) continue;
       for (int i = 0; i < kRowColumns; ++i) {
-        const Eigen::Matrix<double, Q + 1, 1> row =
-            map.transpose().lazyProduct(entry->factor[s].row(i));
+        const Eigen::Matrix<double, Q + 1, 1> row = columns.row_of(entry->factor[s], i);
         score += fit.weight[s] * (row[Q] - row.template head<Q>().dot(fit.theta)) *
                  row.template head<Q>();
       }
@@ -142,28 +140,38 @@ inline double short_record_factor(double count) noexcept {
   return count > 4.0 ? 1.0 + 3.0 / (count - 3.0) : 4.0;
 }
 
-/// NMSE of the entries, each predicted from the others: folds interleaved, `folds` of them.
+/// Weighted normal equations of all scales, [X t]'[X t].
 template <int Q>
-double held_out_nmse_of(const WeightedFit<Q>& fit, EntryList entries, const ColumnMap<Q>& map,
-                        std::size_t folds) noexcept {
-  using Gram = Eigen::Matrix<double, Q + 1, Q + 1>;
-  const auto gram_of = [&](const ScaleFactors& f) {
-    Gram g = Gram::Zero();
-    for (std::size_t s = 0; s < kScales; ++s) {
-      if (!(fit.weight[s] > 0.0)) continue;
-      for (int i = 0; i < kRowColumns; ++i) {
-        const Eigen::Matrix<double, Q + 1, 1> row = map.transpose().lazyProduct(f.factor[s].row(i));
-        g += fit.weight[s] * row.lazyProduct(row.transpose());
-      }
+Eigen::Matrix<double, Q + 1, Q + 1> weighted_gram(const WeightedFit<Q>& fit,
+                                                  const ScaleFactors& factors,
+                                                  const MappedColumns<Q>& columns) noexcept {
+  Eigen::Matrix<double, Q + 1, Q + 1> gram = Eigen::Matrix<double, Q + 1, Q + 1>::Zero();
+  for (std::size_t s = 0; s < kScales; ++s) {
+    if (!(fit.weight[s] > 0.0)) continue;
+    for (int i = 0; i < kRowColumns; ++i) {
+      const Eigen::Matrix<double, Q + 1, 1> row = columns.row_of(factors.factor[s], i);
+      gram += fit.weight[s] * row.lazyProduct(row.transpose());
     }
-    return g;
-  };
+  }
+  return gram;
+}
+
+/// NMSE of the entries, each predicted from the others: `Folds` of them, interleaved.
+template <int Q, std::size_t Folds>
+double held_out_nmse_of(const WeightedFit<Q>& fit, EntryList entries,
+                        const ColumnMap<Q>& map) noexcept {
+  using Gram = Eigen::Matrix<double, Q + 1, Q + 1>;
+  const MappedColumns<Q> columns{map};
   Gram all = Gram::Zero();
-  for (const ScaleFactors* entry : entries) all += gram_of(*entry);
+  std::array<Gram, Folds> held_of;
+  held_of.fill(all);
+  for (std::size_t b = 0; b < entries.size(); ++b) {
+    const Gram gram = weighted_gram<Q>(fit, *entries[b], columns);
+    all += gram;
+    held_of[b % Folds] += gram;
+  }
   double error = 0.0;
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    Gram held = Gram::Zero();
-    for (std::size_t b = fold; b < entries.size(); b += folds) held += gram_of(*entries[b]);
+  for (const Gram& held : held_of) {
     const Gram rest = all - held;
     const Eigen::Matrix<double, Q, 1> theta = solve_cholesky<Q>(
         rest.template topLeftCorner<Q, Q>(), rest.template topRightCorner<Q, 1>());

@@ -12,16 +12,8 @@ constexpr ScaleMask kAllScales{true, true, true, true, true};
 }  // namespace
 
 GroupMeter::Gram GroupMeter::gram_of(const ScaleFactors& total) const noexcept {
-  Gram out = Gram::Zero();
-  for (std::size_t s = 0; s < kScales; ++s) {
-    if (!(law_.fit.weight[s] > 0.0)) continue;
-    for (int i = 0; i < kRowColumns; ++i) {
-      const Eigen::Matrix<double, Profile::kUnknowns + 1, 1> row =
-          law_.map.transpose().lazyProduct(total.factor[s].row(i));
-      out += law_.fit.weight[s] * row.lazyProduct(row.transpose());
-    }
-  }
-  return out;
+  return weighted_gram<Profile::kUnknowns>(law_.fit, total,
+                                           MappedColumns<Profile::kUnknowns>{law_.map});
 }
 
 bool GroupMeter::update(const ScaleFactors& total, Group& out) noexcept {

@@ -41,16 +41,7 @@ struct Entries {
 };
 
 Gram gram_of(const ScaleFactors& factors, const Profile& law) noexcept {
-  Gram out = Gram::Zero();
-  for (std::size_t s = 0; s < kScales; ++s) {
-    if (!(law.fit.weight[s] > 0.0)) continue;
-    for (int i = 0; i < kRowColumns; ++i) {
-      const Eigen::Matrix<double, kUnknowns + 1, 1> row =
-          law.map.transpose().lazyProduct(factors.factor[s].row(i));
-      out += law.fit.weight[s] * row.lazyProduct(row.transpose());
-    }
-  }
-  return out;
+  return weighted_gram<kUnknowns>(law.fit, factors, MappedColumns<kUnknowns>{law.map});
 }
 
 template <int Q>
