@@ -15,9 +15,10 @@
 namespace dampline::bench {
 
 enum class Parts : std::uint8_t {
-  kEstimate,  ///< decode, checks, motion, wavelet rows, estimate
-  kIdentify,  ///< and densities, phase planes and guards, as `dampline identify` runs it
-  kExplain    ///< and the sums that judge every candidate effect, as `dampline explain` runs it
+  kEstimate,   ///< decode, checks, motion, wavelet rows, estimate
+  kDensities,  ///< and the densities
+  kIdentify,   ///< and phase planes and guards, as `dampline identify` runs it
+  kExplain     ///< and the sums that judge every candidate effect, as `dampline explain` runs it
 };
 
 /// The project's own sensors.
@@ -51,12 +52,11 @@ class Chain {
     }
   }
   void take(const Sample& sample) noexcept {
-    if constexpr (kParts != Parts::kEstimate) guard_.update(sample);
+    if constexpr (kCompanions) guard_.update(sample);
     const UpdateResult result = identifier_.update(sample);
-    if constexpr (kParts != Parts::kEstimate) {
+    if constexpr (kCompanions)
       if (result.has_motion) phase_.update(result.motion);
-      methods_.update(result);
-    }
+    if constexpr (kParts >= Parts::kDensities) methods_.update(result);
     if constexpr (kParts == Parts::kExplain) diagnosis_.update(sample, result);
   }
   [[nodiscard]] Identifier& identifier() noexcept { return identifier_; }
@@ -68,7 +68,7 @@ class Chain {
   };
   template <bool kPresent, class T>
   using If = std::conditional_t<kPresent, T, None>;
-  static constexpr bool kCompanions = kParts != Parts::kEstimate;
+  static constexpr bool kCompanions = kParts >= Parts::kIdentify;
 
   Chain(const AssemblerConfig& frames, const IdentifierConfig& core, const GuardConfig& guard)
       : assembler_{frames},
@@ -82,7 +82,7 @@ class Chain {
   Identifier identifier_;
   If<kCompanions, Guard> guard_;
   If<kCompanions, PhaseView> phase_;
-  If<kCompanions, Methods> methods_;
+  If<(kParts >= Parts::kDensities), Methods> methods_;
   If<kParts == Parts::kExplain, effect::Diagnosis> diagnosis_;
 };
 

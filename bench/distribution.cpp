@@ -118,9 +118,10 @@ int run(int argc, char** argv) {
                                  {"page_faults", times.page_faults}});
     if (csv.is_open()) write_csv(csv, name, times.ns);
   };
-  report("frames to estimate", measure<Parts::kEstimate>());
-  report("and densities; phase; guards", measure<Parts::kIdentify>());
-  report("and sums of every candidate effect", measure<Parts::kExplain>());
+  report("to the estimate", measure<Parts::kEstimate>());
+  report("and densities", measure<Parts::kDensities>());
+  report("and phase and guards", measure<Parts::kIdentify>());
+  report("and every candidate's sums", measure<Parts::kExplain>());
   if (!json.empty()) std::ofstream{json} << out.dump(2) << '\n';
   return quiet ? 0 : 1;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // How fast a recorded run is replayed, decoding included, and how much memory that takes, beside
 // canplayer, which only parses the log, and beside NumPy doing the same job.
-// `replay PROGRAM [--day]`: PROGRAM is the built dampline; --day adds 24 hours through a pipe.
+// `replay PROGRAM [--day] [--json FILE]`: PROGRAM is the built dampline; --day adds 24 hours
+// through a pipe.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -9,6 +10,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -43,8 +46,13 @@ Usage run(const std::string& command) {
 
 constexpr double kFramesPerSecond = 900.0;  // of the record
 
-void print_row(std::string_view name, double record_s, const Usage& usage) {
+/// On the standard output and in `out`.
+void report(const std::string& name, double record_s, const Usage& usage, nlohmann::json& out) {
   if (!usage.ok) return fmt::print("| {} | skipped: it did not run here | | | |\n", name);
+  out["replay"].push_back({{"name", name},
+                           {"cpu_s", usage.cpu_s},
+                           {"frames_per_s", kFramesPerSecond * record_s / usage.cpu_s},
+                           {"peak_mib", usage.peak_mib}});
   fmt::print("| {} | {:.2f} | {:.0f} | {:.2f} | {:.1f} |\n", name, usage.cpu_s,
              record_s / usage.cpu_s, 1e-6 * kFramesPerSecond * record_s / usage.cpu_s,
              usage.peak_mib);
@@ -52,7 +60,8 @@ void print_row(std::string_view name, double record_s, const Usage& usage) {
 }
 
 /// Writes a record with its configuration, and identifies it from the file.
-void replay_file(const std::string& program, const fs::path& folder, int minutes) {
+void replay_file(const std::string& program, const fs::path& folder, int minutes,
+                 nlohmann::json& out) {
   const std::string log = (folder / fmt::format("run{}.log", minutes)).string();
   const std::string config = (folder / "run.toml").string();
   const std::string dbc = (folder / "sensors.dbc").string();
@@ -60,32 +69,35 @@ void replay_file(const std::string& program, const fs::path& folder, int minutes
       "exec '{}' simulate --quiet --duration {} --out '{}' --dbc '{}' --config-out '{}'", program,
       60 * minutes, log, dbc, config));
   if (!made.ok) return fmt::print("could not simulate with {}\n", program);
-  print_row(fmt::format("{} min, canplayer to stdout", minutes), 60.0 * minutes,
-            run(fmt::format("exec canplayer -t -I '{}' stdout=can0 >/dev/null", log)));
-  print_row(fmt::format("{} min, NumPy and SciPy", minutes), 60.0 * minutes,
-            run(fmt::format("exec /usr/bin/python3 bench/peers/pipeline.py '{}' >/dev/null", log)));
+  report(fmt::format("{} min, canplayer to stdout", minutes), 60.0 * minutes,
+         run(fmt::format("LD_PRELOAD='{}' exec canplayer -t -I '{}' stdout=can0 >/dev/null",
+                         DAMPLINE_CAN_SOCKET, log)),
+         out);
+  report(fmt::format("{} min, NumPy and SciPy", minutes), 60.0 * minutes,
+         run(fmt::format("exec /usr/bin/python3 bench/peers/pipeline.py '{}' >/dev/null", log)),
+         out);
   const Usage used = run(
       fmt::format("exec '{}' identify --quiet --no-report --config '{}' --out '{}' '{}' >/dev/null",
                   program, config, (folder / fmt::format("run{}", minutes)).string(), log));
-  print_row(fmt::format("{} min, dampline identify", minutes), 60.0 * minutes, used);
+  report(fmt::format("{} min, dampline identify", minutes), 60.0 * minutes, used, out);
 }
 
 /// A day, from the simulator's pipe: no file of that size, and only identify is measured.
-void replay_day(const std::string& program, const fs::path& folder) {
+void replay_day(const std::string& program, const fs::path& folder, nlohmann::json& out) {
   const std::string pipe = (folder / "pipe").string();
   const Usage used =
       run(fmt::format("mkfifo '{0}'; '{1}' simulate --quiet --duration 86400 --format candump "
                       "--out '{0}' & exec '{1}' identify --quiet "
                       "--no-report --config '{2}' --out '{3}' - <'{0}' >/dev/null",
                       pipe, program, (folder / "run.toml").string(), (folder / "day").string()));
-  print_row("24 h, candump pipe", 86400.0, used);
+  report("24 h, candump pipe, dampline identify", 86400.0, used, out);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    fmt::print("usage: replay PROGRAM [--day]\n");
+    fmt::print("usage: replay PROGRAM [--day] [--json FILE]\n");
     return 2;
   }
   const std::string program = argv[1];
@@ -95,9 +107,14 @@ int main(int argc, char** argv) {
   fmt::print(
       "| record | CPU time in s | times real time | million frames a CPU second | peak memory in "
       "MiB |\n|--|--|--|--|--|\n");
-  replay_file(program, folder, 5);
-  replay_file(program, folder, 20);
-  if (argc > 2 && std::string_view{argv[2]} == "--day") replay_day(program, folder);
+  nlohmann::json out;
+  replay_file(program, folder, 5, out);
+  replay_file(program, folder, 20, out);
+  for (int i = 2; i < argc; ++i) {
+    if (std::string_view{argv[i]} == "--day") replay_day(program, folder, out);
+    if (std::string_view{argv[i]} == "--json" && i + 1 < argc)
+      std::ofstream{argv[i + 1]} << out.dump(2) << '\n';
+  }
   fs::remove_all(folder);
   return EXIT_SUCCESS;
 }

@@ -10,9 +10,11 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "bench/cache_misses.hpp"
 #include "bench/chain.hpp"
 #include "bench/peers/problem.hpp"
 #include "bench/peers/timing.hpp"
@@ -57,6 +59,26 @@ double flops_per_ns() {
   return sink > 0.0 ? 8.0 * 4.0 * kTurns / ns : 0.0;
 }
 
+/// Instructions a nanosecond at most: additions of which none waits for its neighbours. 0 where
+/// their encoding is not known.
+double instructions_per_ns() {
+#ifdef __x86_64__
+  constexpr int kTurns = 1'000'000;
+  const double ns = best_ns([] {
+    std::uint64_t a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
+    for (int i = 0; i < kTurns; ++i)
+      asm volatile(
+          "add $1, %0\n add $1, %1\n add $1, %2\n add $1, %3\n add $1, %4\n add $1, %5\n"
+          "add $1, %0\n add $1, %1\n add $1, %2\n add $1, %3\n add $1, %4\n add $1, %5\n"
+          "add $1, %0\n add $1, %1\n add $1, %2\n add $1, %3\n add $1, %4\n add $1, %5\n"
+          : "+r"(a), "+r"(b), "+r"(c), "+r"(d), "+r"(e), "+r"(f));
+  });
+  return 18.0 * kTurns / ns;
+#else
+  return 0.0;
+#endif
+}
+
 /// Bytes a nanosecond read and written over `bytes` of memory.
 double bytes_per_ns(std::size_t bytes) {
   std::vector<double> from(bytes / sizeof(double) / 2, 1.0);
@@ -73,6 +95,7 @@ double bytes_per_ns(std::size_t bytes) {
 }
 
 struct Limit {
+  double instructions_per_ns;
   double flops_per_ns;
   double near_bytes_per_ns;  // 16 KiB, the first cache
   double far_bytes_per_ns;   // 256 MiB, memory
@@ -140,8 +163,14 @@ void segments(const Limit& limit, nlohmann::json& out) {
   print_terms<kUnknowns>(limit, row_ns<kUnknowns>(x, y), "broken line, two more", out);
 }
 
+/// Of one truck and sample.
+struct TruckCost {
+  double ns;
+  std::optional<double> cache_misses;  // none where the machine does not count them
+};
+
 /// Frames to estimate, one instant of every truck after another.
-double truck_ns(std::size_t trucks) {
+TruckCost truck_cost(std::size_t trucks) {
   std::vector<std::unique_ptr<Chain<Parts::kEstimate>>> fleet;
   for (std::size_t i = 0; i < trucks; ++i)
     fleet.push_back(std::make_unique<Chain<Parts::kEstimate>>());
@@ -150,27 +179,39 @@ double truck_ns(std::size_t trucks) {
     const auto frames = feed.next();
     for (const auto& truck : fleet) truck->push(frames);
   };
-  // Past the filters' delay of 2 s, so that rows are made and absorbed.
-  for (int i = 0; i < 1'500; ++i) tick();
+  // Past the 3.2 s after which every scale makes rows.
+  for (int i = 0; i < 1'000; ++i) tick();
   const auto ticks =
       static_cast<std::int64_t>(std::clamp<std::size_t>(1'000'000 / trucks, 120, 100'000));
+  const double samples = static_cast<double>(ticks) * static_cast<double>(trucks);
+  const CacheMisses counter;
+  counter.start();
   const double start_ns = thread_time_ns();
   for (std::int64_t i = 0; i < ticks; ++i) tick();
-  return (thread_time_ns() - start_ns) / static_cast<double>(ticks) / static_cast<double>(trucks);
+  TruckCost out{(thread_time_ns() - start_ns) / samples, std::nullopt};
+  if (const auto misses = counter.stop()) out.cache_misses = static_cast<double>(*misses) / samples;
+  return out;
 }
 
 void trucks(const Limit& limit, nlohmann::json& out) {
   const double mib = static_cast<double>(sizeof(Chain<Parts::kEstimate>)) / (1024.0 * 1024.0);
   fmt::print(
-      "\n| trucks | memory, MiB | ns per truck and sample | times one truck |\n|--|--|--|--|\n");
+      "\n| trucks | memory, MiB | ns per truck and sample | times one truck | misses of the last "
+      "cache per truck and sample |\n|--|--|--|--|--|\n");
   double one_ns = 0.0;
   for (const std::size_t count : {1U, 100U, 1'000U, 10'000U}) {
-    const double ns = truck_ns(count);
-    if (count == 1) one_ns = ns;
-    fmt::print("| {} | {:.1f} | {:.0f} | {:.2f} |\n", count, mib * static_cast<double>(count), ns,
-               ns / one_ns);
+    const TruckCost cost = truck_cost(count);
+    if (count == 1) one_ns = cost.ns;
+    fmt::print("| {} | {:.1f} | {:.0f} | {:.2f} | {} |\n", count, mib * static_cast<double>(count),
+               cost.ns, cost.ns / one_ns,
+               cost.cache_misses ? fmt::format("{:.1f}", *cost.cache_misses) : "not counted here");
     std::fflush(stdout);
-    out["trucks"].push_back({{"trucks", count}, {"ns_per_sample", ns}, {"times_one", ns / one_ns}});
+    out["trucks"].push_back({{"trucks", count},
+                             {"mib", mib * static_cast<double>(count)},
+                             {"ns_per_sample", cost.ns},
+                             {"times_one", cost.ns / one_ns},
+                             {"cache_misses_per_sample", nullptr}});
+    if (cost.cache_misses) out["trucks"].back()["cache_misses_per_sample"] = *cost.cache_misses;
   }
   fmt::print("Memory gives {:.1f} bytes a ns, the first cache {:.1f}\n", limit.far_bytes_per_ns,
              limit.near_bytes_per_ns);
@@ -202,12 +243,16 @@ void windows(nlohmann::json& out) {
 
 int run(int argc, char** argv) {
   nlohmann::json out;
-  const Limit limit{flops_per_ns(), bytes_per_ns(16'384), bytes_per_ns(std::size_t{256} << 20U)};
+  const Limit limit{instructions_per_ns(), flops_per_ns(), bytes_per_ns(16'384),
+                    bytes_per_ns(std::size_t{256} << 20U)};
   fmt::print(
-      "This core: {:.1f} flops a ns from registers; bytes a ns {:.1f} in 16 KiB, {:.1f} in "
+      "This core: {:.1f} instructions a ns, {:.1f} flops from registers; bytes a ns {:.1f} in 16 "
+      "KiB, {:.1f} in "
       "256 MiB\n\n",
-      limit.flops_per_ns, limit.near_bytes_per_ns, limit.far_bytes_per_ns);
-  out["limit"] = {{"flops_per_ns", limit.flops_per_ns},
+      limit.instructions_per_ns, limit.flops_per_ns, limit.near_bytes_per_ns,
+      limit.far_bytes_per_ns);
+  out["limit"] = {{"instructions_per_ns", limit.instructions_per_ns},
+                  {"flops_per_ns", limit.flops_per_ns},
                   {"bytes_per_ns_16_KiB", limit.near_bytes_per_ns},
                   {"bytes_per_ns_256_MiB", limit.far_bytes_per_ns}};
   fmt::print(

@@ -112,9 +112,10 @@ int run(int argc, char** argv) {
       "| recvmmsg to result, ns per instant of three frames, {} instants | p50 | p90 | p99 | p99.9 "
       "| largest |\n|--|--|--|--|--|--|\n",
       kInstants);
-  const bool ok = report<Parts::kEstimate>("frames to estimate", out) &&
-                  report<Parts::kIdentify>("and densities; phase; guards", out) &&
-                  report<Parts::kExplain>("and sums of every candidate effect", out);
+  const bool ok = report<Parts::kEstimate>("to the estimate", out) &&
+                  report<Parts::kDensities>("and densities", out) &&
+                  report<Parts::kIdentify>("and phase and guards", out) &&
+                  report<Parts::kExplain>("and every candidate's sums", out);
   if (!ok) fmt::print("a frame was lost on the way\n");
   if (argc == 3 && std::string_view{argv[1]} == "--json")
     std::ofstream{argv[2]} << out.dump(2) << '\n';

@@ -193,6 +193,7 @@ BENCHMARK(guard)->Name("guard/update");
 BENCHMARK(effect_diagnosis)->Name("effect/diagnosis");
 BENCHMARK(identifier)->Name("identifier/update");
 BENCHMARK(chain<Parts::kEstimate>)->Name("chain/estimate");
+BENCHMARK(chain<Parts::kDensities>)->Name("chain/densities");
 BENCHMARK(chain<Parts::kIdentify>)->Name("chain/identify");
 BENCHMARK(chain<Parts::kExplain>)->Name("chain/explain");
 

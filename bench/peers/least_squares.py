@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """NumPy's answer to the rows that `peers_rls --rows FILE` wrote, beside the project's in the same
 file, and what a recursion row by row costs as a NumPy user would write it. Exit 1 where the answers
-are further apart than 1e-9. `least_squares.py FILE`; see bench/README.md."""
+are further apart than 1e-9. `least_squares.py FILE [JSON]`; see bench/README.md."""
+import json
 import sys
 import time
 
@@ -38,11 +39,17 @@ def main():
     print(f"| NumPy {np.__version__}, n = {UNKNOWNS} | ns per row | difference of the answer |")
     print("|--|--|--|")
     same = True
+    out = []
     for name, answer, cost_s in (("lstsq over all rows", batch, middle - start),
                                  ("recursion row by row", row_by_row, end - middle)):
         difference = np.abs(answer - ours).max()
         same = same and difference < SAME_ANSWER
         print(f"| {name} | {1e9 * cost_s / len(y):.0f} | {difference:.1e} |")
+        out.append({"name": f"NumPy {np.__version__}, {name}", "unknowns": UNKNOWNS,
+                    "ns_per_row": 1e9 * cost_s / len(y), "difference": difference})
+    if len(sys.argv) > 2:
+        with open(sys.argv[2], "w", encoding="utf-8") as file:
+            json.dump({"least_squares": out}, file)
     sys.exit(0 if same else 1)
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Motion beside another library's filter, densities beside another library's histograms, on the
-// same samples. `peers_signals [--json FILE]`; see bench/README.md.
+// same samples. `peers_signals [--json FILE] [--signals FILE]`: --signals writes the samples and
+// the counts for signals.py; see bench/README.md.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -136,6 +137,15 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return out;
 }
 
+/// Accelerations, deflections, velocities, and the project's counts of 64 and 32 x 32 bins.
+void write_signals(const Signals& signals, const Counted& ours, const char* path) {
+  std::ofstream file{path, std::ios::binary};
+  for (const auto* numbers : {&signals.relative_mps2, &signals.deflection_m, &signals.velocity_mps,
+                              &ours.line, &ours.plane})
+    file.write(reinterpret_cast<const char*>(numbers->data()),
+               static_cast<std::streamsize>(numbers->size() * sizeof(double)));
+}
+
 int run(int argc, char** argv) {
   const Signals signals;
   Counted ours;
@@ -165,8 +175,11 @@ int run(int argc, char** argv) {
     out["histograms_agree"] = same;
   }
   std::fputs(missing_peers(), stdout);
-  if (argc == 3 && std::string_view{argv[1]} == "--json")
-    std::ofstream{argv[2]} << out.dump(2) << '\n';
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view option = argv[i];
+    if (option == "--json") std::ofstream{argv[i + 1]} << out.dump(2) << '\n';
+    if (option == "--signals") write_signals(signals, ours, argv[i + 1]);
+  }
   return same ? 0 : 1;
 }
 
