@@ -12,8 +12,10 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "bench/peers/estimators.hpp"
 #include "bench/peers/whole_chain.hpp"
@@ -120,9 +122,9 @@ class Competition {
   template <class Estimator>
   void enter(const char* name) {
     const std::size_t row = add(name);
-    jobs_.push_back([this, row] { rows_[row].running = day<Estimator>(hours_); });
-    jobs_.push_back([this, row] { rows_[row].quarter = standstill<Estimator>(kQuarterS); });
-    jobs_.push_back([this, row] { rows_[row].shift = standstill<Estimator>(kShiftS); });
+    jobs_.emplace_back([this, row] { rows_[row].running = day<Estimator>(hours_); });
+    jobs_.emplace_back([this, row] { rows_[row].quarter = standstill<Estimator>(kQuarterS); });
+    jobs_.emplace_back([this, row] { rows_[row].shift = standstill<Estimator>(kShiftS); });
   }
 
   void enter_whole_chain() {
@@ -131,9 +133,10 @@ class Competition {
     const auto store = [this, first](Outcome Row::*place, const WholeChain::Outcomes& outcomes) {
       for (std::size_t m = 0; m < outcomes.size(); ++m) rows_[first + m].*place = outcomes[m];
     };
-    jobs_.push_back([=, this] { store(&Row::running, WholeChain::day(kDriveS, 3600.0 * hours_)); });
-    jobs_.push_back([=] { store(&Row::quarter, WholeChain::standstill(kDriveS, kQuarterS)); });
-    jobs_.push_back([=] { store(&Row::shift, WholeChain::standstill(kDriveS, kShiftS)); });
+    jobs_.emplace_back(
+        [=, this] { store(&Row::running, WholeChain::day(kDriveS, 3600.0 * hours_)); });
+    jobs_.emplace_back([=] { store(&Row::quarter, WholeChain::standstill(kDriveS, kQuarterS)); });
+    jobs_.emplace_back([=] { store(&Row::shift, WholeChain::standstill(kDriveS, kShiftS)); });
   }
 
   /// On every core.
@@ -142,9 +145,8 @@ class Competition {
     const auto work = [&] {
       for (std::size_t job = next++; job < jobs_.size(); job = next++) jobs_[job]();
     };
-    std::vector<std::thread> threads;
-    for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
-      threads.emplace_back(work);
+    std::vector<std::thread> threads(std::max(1U, std::thread::hardware_concurrency()));
+    for (std::thread& thread : threads) thread = std::thread{work};
     for (std::thread& thread : threads) thread.join();
   }
 
