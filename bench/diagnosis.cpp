@@ -49,6 +49,7 @@ struct Tally {
   Share right, wrong, alarm, magnitude, repaired, extra, withheld, complete, floor, as_true;
   std::vector<double> floors, ratios;  // over what is left: of clean records, of right ones
   std::vector<double> over_true;       // left over what the true model leaves
+  std::map<std::string, std::vector<double>> over_true_of;
   std::string misses;
 
   void add(const std::string& kind, const Condition& condition, const DiagnosedRecord& record) {
@@ -84,6 +85,7 @@ struct Tally {
     if (named && record.true_nmse > 0.0) {
       over_true.push_back(e.final.held_out_nmse / record.true_nmse);
       as_true.add(over_true.back() <= 1.1);
+      over_true_of[kind].push_back(over_true.back());
     }
   }
 
@@ -139,9 +141,11 @@ void print(const Tally& tally) {
   fmt::print("| left over floor, of the right ones: median (range) | {} | |\n",
              median_and_range(tally.ratios));
   fmt::print("| the same up to 1.5 | {} | |\n", tally.complete.text());
-  fmt::print("| left over what the model with the true length leaves: median (range) | {} | |\n",
+  fmt::print("| left over what the true model leaves: median (range) | {} | |\n",
              median_and_range(tally.over_true));
   fmt::print("| the same up to 1.1 | {} | all |\n", tally.as_true.text());
+  for (const auto& [kind, values] : tally.over_true_of)
+    fmt::print("| ... {} | {} | |\n", kind, median_and_range(values));
   fmt::print("\n| condition | planted | named | best candidate |\n|--|--|--|--|\n{}", tally.misses);
 }
 

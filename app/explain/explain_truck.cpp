@@ -41,7 +41,12 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
 }  // namespace
 
 Explained explain_truck(const Config& config, const ExplainOptions& options) {
-  const TruckPass pass = pass_of(config, options.source, {0.0, options.show_progress, {}});
+  const IdentifierConfig core = identifier_config(config);
+  FrameNoise noise{core.sample_rate_hz, core.anti_alias};
+  const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
+    noise.take(sample);
+  };
+  const TruckPass pass = pass_of(config, options.source, {0.0, options.show_progress, listen});
   Explained out;
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
@@ -49,7 +54,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   if (!judge_sums(config, *pass.diagnosis, *explainer, out))
     throw RunError{fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
                                options.source.path, pass.diagnosis->store().count())};
-  look_again(config, options, pass, *explainer, out);
+  look_again(config, options, pass, noise, *explainer, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(config, {path, options.source.skip_bad_lines}, ++number,

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kFine = 8;               // steps a sample
 constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
+constexpr double kRamp = 0.05;         // of a gap: where the force rises
 constexpr double kSteepest = 0.8;      // slope times step that Runge-Kutta is trusted with
-constexpr std::uint64_t kSeed = 1987;
 
 sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config) {
   return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, kFine * config.sample_rate_hz};
@@ -24,8 +24,10 @@ bool is_number(const Sample& sample) {
 }  // namespace
 
 Twin::Twin(const TwinConfig& config)
-    : config_{config}, filter_{filter_of(config)}, noise_{kSeed, sim::Stream::kSensors} {
-  const double slope = 2.0 * config.coulomb_mps2 / kLawWidthMps;
+    : config_{config}, filter_{filter_of(config)}, noise_{config.seed, sim::Stream::kSensors} {
+  const double sliding_mps2 =
+      config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);
+  const double slope = 2.0 * sliding_mps2 / kLawWidthMps;
   parts_ = 1 + static_cast<int>(slope / (kSteepest * kFine * config.sample_rate_hz));
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double rounding = config.step_mps2[c] * config.step_mps2[c] / 12.0;
@@ -34,20 +36,36 @@ Twin::Twin(const TwinConfig& config)
   }
 }
 
-double Twin::frame_mps2(const Motion& m) const noexcept {
-  return -config_.stiffness_per_s2 * m.deflection_m - config_.viscous_per_s * m.velocity_mps -
-         config_.coulomb_mps2 * std::tanh(m.velocity_mps / kLawWidthMps);
+/// Friction with memory, of its level.
+double Twin::remembered(const Motion& m) const noexcept {
+  const TwinMemory& law = config_.memory;
+  if (!law.is_play) return m.zeta;
+  const double travelled_m =
+      std::copysign(1.0, m.velocity_mps) * (m.deflection_m - piston_m_) + 0.5 * law.length_m;
+  const double share = 1.0 - (law.length_m - travelled_m) / (kRamp * law.length_m);
+  return std::clamp(share, 0.0, 1.0) * std::tanh(m.velocity_mps / kLawWidthMps);
 }
 
-/// y'' = 2 z_b'' - (z_1'' + z_2'')
+double Twin::frame_mps2(const Motion& m) const noexcept {
+  const double friction = config_.coulomb_mps2 * std::tanh(m.velocity_mps / kLawWidthMps);
+  const double memory =
+      config_.memory.force_mps2 > 0.0 ? config_.memory.force_mps2 * remembered(m) : 0.0;
+  return -config_.stiffness_per_s2 * m.deflection_m - config_.viscous_per_s * m.velocity_mps -
+         friction - memory;
+}
+
+/// y'' = 2 z_b'' - (z_1'' + z_2''); zeta' = (v - zeta |v|) / r
 Twin::Motion Twin::rate(const Motion& m, double input_mps2) const noexcept {
-  return {m.velocity_mps, 2.0 * frame_mps2(m) - input_mps2};
+  const bool builds_up = config_.memory.force_mps2 > 0.0 && !config_.memory.is_play;
+  const double v = m.velocity_mps;
+  return {v, 2.0 * frame_mps2(m) - input_mps2,
+          builds_up ? (v - m.zeta * std::abs(v)) / config_.memory.length_m : 0.0};
 }
 
 void Twin::step(double from_mps2, double to_mps2, double step_s) noexcept {
   const auto moved = [this](const Motion& by, double s) {
     return Motion{motion_.deflection_m + s * by.deflection_m,
-                  motion_.velocity_mps + s * by.velocity_mps};
+                  motion_.velocity_mps + s * by.velocity_mps, motion_.zeta + s * by.zeta};
   };
   const double middle_mps2 = 0.5 * (from_mps2 + to_mps2);
   const Motion a = rate(motion_, from_mps2);
@@ -58,8 +76,11 @@ void Twin::step(double from_mps2, double to_mps2, double step_s) noexcept {
     return (p + 2.0 * q + 2.0 * r + s) / 6.0;
   };
   motion_ = moved({mean(a.deflection_m, b.deflection_m, c.deflection_m, d.deflection_m),
-                   mean(a.velocity_mps, b.velocity_mps, c.velocity_mps, d.velocity_mps)},
+                   mean(a.velocity_mps, b.velocity_mps, c.velocity_mps, d.velocity_mps),
+                   mean(a.zeta, b.zeta, c.zeta, d.zeta)},
                   step_s);
+  const double reach_m = 0.5 * config_.memory.length_m;
+  piston_m_ = std::clamp(piston_m_, motion_.deflection_m - reach_m, motion_.deflection_m + reach_m);
 }
 
 /// The wheelsets between the second and the third of four samples, by the cubic through them.
@@ -88,6 +109,7 @@ Sample Twin::seen(const std::array<double, kChannels>& accel_mps2) {
 void Twin::restart() noexcept {
   count_ = 0;
   motion_ = {};
+  piston_m_ = 0.0;
   filter_ = filter_of(config_);
 }
 

@@ -10,19 +10,30 @@
 
 namespace dampline::app {
 
-/// The declared law and the sensors, as a record tells them.
+/// Friction that remembers where the motion turned: none over the gap (play), or building up over
+/// the length (Dahl).
+struct TwinMemory {
+  bool is_play{false};
+  double force_mps2{0.0};  ///< per unit of mass, in steady sliding; 0: none
+  double length_m{0.0};
+};
+
+/// The law and the sensors, as a record tells them.
 struct TwinConfig {
   double sample_rate_hz{300.0};
-  double coulomb_mps2{0.0};                    ///< F / M
-  double stiffness_per_s2{0.0};                ///< k / M
-  double viscous_per_s{0.0};                   ///< c / M
+  double coulomb_mps2{0.0};      ///< F / M
+  double stiffness_per_s2{0.0};  ///< k / M
+  double viscous_per_s{0.0};     ///< c / M
+  TwinMemory memory{};
   double anti_alias_hz{0.0};                   ///< 0: none
   std::array<double, kChannels> noise_mps2{};  ///< rms, what the resolution makes included
   std::array<double, kChannels> step_mps2{};   ///< resolution; 0: unknown
+  std::uint64_t seed{1987};                    ///< of the noise
 };
 
-/// The record that the declared law alone would have made: M z_b'' + k y + c v + F sign v = 0 on
-/// the measured motion of the wheelsets, seen by the same sensors. What the estimate leaves of it
+/// The record that a law alone would have made: M z_b'' + k y + c v + F sign v = 0, and friction
+/// with memory where there is some, on the measured motion of the wheelsets, seen by the same
+/// sensors. What the estimate leaves of it
 /// is the floor that no effect can take away.
 class Twin {
  public:
@@ -35,8 +46,10 @@ class Twin {
   struct Motion {
     double deflection_m{0.0};
     double velocity_mps{0.0};
+    double zeta{0.0};  // of Dahl's law
   };
   [[nodiscard]] double frame_mps2(const Motion& m) const noexcept;
+  [[nodiscard]] double remembered(const Motion& m) const noexcept;
   [[nodiscard]] Motion rate(const Motion& m, double input_mps2) const noexcept;
   void step(double from_mps2, double to_mps2, double step_s) noexcept;
   [[nodiscard]] std::array<double, 2> between(double u) const noexcept;
@@ -51,6 +64,7 @@ class Twin {
   std::array<Sample, 4> held_{};  // oldest first
   int count_{0};
   Motion motion_{};
+  double piston_m_{0.0};  // in its play
 };
 
 }  // namespace dampline::app

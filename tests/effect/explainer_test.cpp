@@ -144,10 +144,10 @@ TEST(Explainer, ImpactsOnTheTwinTooAreNone) {
   const Record sound = explained("", 79, 150.0, record.diagnosis->scale_m());
   const auto explainer = std::make_unique<Explainer>();
   Explanation kept = record.explanation;
-  ASSERT_TRUE(explainer->apply_floor(*sound.diagnosis, 0, kept));
+  ASSERT_TRUE(explainer->apply_floor({*sound.diagnosis}, 0, kept));
   EXPECT_EQ(kept.step_count, 1U);
   Explanation taken_back = record.explanation;
-  ASSERT_TRUE(explainer->apply_floor(*record.diagnosis, 0, taken_back));
+  ASSERT_TRUE(explainer->apply_floor({*record.diagnosis}, 0, taken_back));
   EXPECT_EQ(taken_back.step_count, 0U);
 }
 

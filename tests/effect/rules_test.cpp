@@ -55,5 +55,27 @@ TEST(Rules, ImperfectionsOfWhatIsKnownAreNoEffects) {
   EXPECT_EQ(later(Effect::kBumpStop, sure(Effect::kViscous, 0.02)), Verdict::kYes);
 }
 
+TEST(Rules, ASkewBesideMemoryStandsInNobodysWay) {
+  EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.05, 10.0, 25.0)), Verdict::kNo);
+  EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.08, 10.0, 25.0)), Verdict::kYes);
+}
+
+TEST(Rules, ALateChannelLooksLikeAWrongGainOfTheSame) {
+  Step gain = step(Effect::kGainError, 0.09, 10.0, 25.0);
+  gain.chosen.form = kFrameForm;
+  EXPECT_EQ(later(Effect::kTimeSkew, gain), Verdict::kStop);  // of the frame, too
+  gain.chosen.form = kWheelset2Form;
+  EXPECT_EQ(later(Effect::kTimeSkew, gain), Verdict::kYes);
+}
+
+TEST(Rules, SpringsMayBeTheProductOfTwoFrictions) {
+  Candidate progressive;
+  progressive.effect = Effect::kProgressiveFriction;
+  const Model both = with(Effect::kPreslidingHysteresis).with(progressive);
+  const Step spring = step(Effect::kAsymmetricStiffness, 0.11, 25.0, 40.0);
+  EXPECT_EQ(judge_step(both, false, true, spring), Verdict::kStop);
+  EXPECT_EQ(later(Effect::kPreslidingHysteresis, spring), Verdict::kYes);
+}
+
 }  // namespace
 }  // namespace dampline::effect

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "app/explain/frame_noise.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "dampline/guard/guard.hpp"
 #include "sim_hw/effects/registry.hpp"
@@ -97,6 +98,88 @@ TEST(Twin, KeepsGapsAndWhatIsNoNumber) {
   EXPECT_EQ(made, 7 + 1 + 6);
 }
 
+TEST(Twin, BuildsItsFrictionUpOverDahlsLength) {
+  TwinConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.memory = {false, 0.4, 0.6e-3};
+  Twin twin{config};
+  // A slow tone, so that 2 z_b'' = input + y'' and the loop of f(y) is Dahl's closed form:
+  // f = +-F (1 - c e^(-+(y - y_r) / r)) from a reversal at y_r with f = f_r.
+  double y = 0.0;
+  double v = 0.0;
+  double zeta = 0.0;
+  double worst = 0.0;
+  const double step_s = 1.0 / (kRateHz * 400.0);
+  const double w = 2.0 * M_PI * 1.3;
+  const auto input = [&](double t) { return 0.8 * std::sin(w * t) * std::min(1.0, t); };
+  std::vector<double> truth;
+  for (int n = 0; n < 400 * 2400; ++n) {
+    if (n % 400 == 0) truth.push_back(-141.4 * y - 0.4 * zeta);
+    const double a = 2.0 * (-141.4 * y - 0.4 * zeta) - 2.0 * input(step_s * n);
+    v += step_s * a;
+    const double way_m = step_s * v;
+    const double towards = way_m < 0.0 ? -1.0 : 1.0;
+    zeta = towards + (zeta - towards) * std::exp(-std::abs(way_m) / 0.6e-3);
+    y += way_m;
+  }
+  for (int n = 0; n < 2399; ++n) {
+    const auto out = twin.next(sample_of(n, input(n / kRateHz)));
+    if (!out || n < 300) continue;
+    worst =
+        std::max(worst, std::abs(out->accel_mps2[0] - truth[static_cast<std::size_t>(out->tick)]));
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(Twin, HasNoFrictionInsideItsPlay) {
+  TwinConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.memory = {true, 0.4, 4e-3};
+  Twin twin{config};
+  const double w = 2.0 * M_PI * 1.0;
+  // 1.2 mm of deflection stay inside the gap: the spring alone answers, so nothing damps.
+  const double amplitude = 0.08;
+  double peak = 0.0;
+  for (int n = 0; n < 3000; ++n) {
+    const auto out = twin.next(sample_of(n, amplitude * std::sin(w * n / kRateHz)));
+    if (out && n > 2000) peak = std::max(peak, std::abs(out->accel_mps2[0]));
+  }
+  const double forced = amplitude * 2.0 * 141.4 / (2.0 * 141.4 - w * w);
+  EXPECT_GT(peak, forced);  // what the start set swinging goes on
+  EXPECT_LT(peak, 0.4);
+  // 5 times as much takes the gap up, and friction damps.
+  Twin struck{config};
+  double least = 1e9;
+  for (int n = 0; n < 3000; ++n) {
+    const auto out = struck.next(sample_of(n, n < 300 ? 2.0 * std::sin(w * n / kRateHz) : 0.0));
+    if (out && n > 2700) least = std::min(least, std::abs(out->accel_mps2[0]));
+    if (out && n > 2700) peak = std::max(peak, std::abs(out->accel_mps2[0]));
+  }
+  EXPECT_LT(peak, 141.4 * 2.0e-3 + 0.05);  // the free swing that is left fits into the gap
+}
+
+TEST(FrameNoise, IsKnownToAFewPercentUnderFrictionsLeaps) {
+  for (const double scale : {1.0, 2.5}) {
+    for (const sim::Load load : {sim::Load::kLaden, sim::Load::kEmpty}) {
+      sim::SimulationConfig config = sim::reference_run(load, 80.0, 17);
+      config.sensors.noise_mps2 *= scale;
+      sim::Simulation simulation{config};
+      FrameNoise noise{kRateHz, {}};
+      for (int n = 0; n < 300 * 300; ++n) noise.take(sim::to_sample(simulation.next()));
+      const double step = sim::count_scale_mps2(config.sensors.range_mps2[0]);
+      const double truth =
+          std::sqrt(config.sensors.noise_mps2 * config.sensors.noise_mps2 + step * step / 12.0);
+      EXPECT_NEAR(noise.noise_mps2(), truth, 0.06 * truth);
+    }
+  }
+}
+
+TEST(FrameNoise, IsUnknownOfAShortRecord) {
+  FrameNoise noise{kRateHz, {}};
+  for (int n = 0; n < 3000; ++n) noise.take(sample_of(n, 0.0));
+  EXPECT_EQ(noise.noise_mps2(), 0.0);
+}
+
 struct Floor {
   effect::Explanation explanation;
   double truth{0.0};  // held-out nmse of the base on the record
@@ -139,7 +222,7 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
     if (t) twins->update(*t, again->update(*t));
   }
   twins->finish();
-  EXPECT_TRUE(explainer->apply_floor(*twins, 0, e));
+  EXPECT_TRUE(explainer->apply_floor({*twins}, 0, e));
   out.truth = e.base.held_out_nmse;
   return out;
 }

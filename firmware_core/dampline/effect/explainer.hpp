@@ -47,9 +47,16 @@ class Explainer {
   /// What a complete model leaves, from the twin: a record of the base law simulated on the same
   /// input, with the sensors' noise and resolution, through the same Identifier and a Diagnosis of
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
-  /// on the twin, which has none, takes all effects back; concludes. False when the twin has too
-  /// few rows.
-  bool apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& explanation) noexcept;
+  /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
+  /// rows.
+  struct Twins {
+    const Diagnosis& base;
+    const Diagnosis* other_noise{nullptr};  ///< the same once more: the floor is the mean of both
+    /// The base law with the memory of friction that was found: the floor is what a model with both
+    /// leaves of it.
+    const Diagnosis* remembering{nullptr};
+  };
+  bool apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& explanation) noexcept;
 
  private:
   struct Best {
@@ -71,6 +78,12 @@ class Explainer {
   void add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
                      Step& step) noexcept;
   void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;
+  /// What a model leaves of a twin in a record's weights, as a share of the record's own sum of
+  /// squares; negative: the twin is too short.
+  [[nodiscard]] double left_of_twin(const Diagnosis& twin, const Model& model,
+                                    const ScaleWeights& weights, double target) noexcept;
+  /// Whether the first effect gains clearly more than on a twin without it.
+  [[nodiscard]] bool beats_twin(const Diagnosis& twin, const Explanation& e) noexcept;
   void backward(Explanation& out, ModelFit& now) noexcept;
 
   Evidence evidence_;

@@ -8,6 +8,15 @@ namespace {
 constexpr std::size_t kFewestEntries = 10;
 constexpr double kTwinGains = 2.0;  // a real effect gains more than so many times the twin's
 
+/// The base and what was added to it that has memory.
+Model remembering_part(const Explanation& e) noexcept {
+  Model out = e.base_model;
+  for (std::size_t i = e.base_count; i < e.model.count; ++i) {
+    if (has_memory(e.model.effect[i].effect)) out = out.with(e.model.effect[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanation& by) noexcept {
@@ -16,31 +25,46 @@ Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanati
   return {fitter_.nmse_of(by.base_model, by.base), fitter_.nmse_of(by.model, by.final)};
 }
 
-bool Explainer::apply_floor(const Diagnosis& twin, std::uint64_t impacts, Explanation& e) noexcept {
-  const GramStore& store = twin.store();
-  if (store.count() < kFewestEntries || !evidence_.load(store)) return false;
-  // Errors of the twin as shares of the record's own sum of squares.
-  const auto left = [&](const ModelFit& fit, double target) {
-    return fit.held_out_nmse * evidence_.total.at(kTarget, kTarget) / target;
+double Explainer::left_of_twin(const Diagnosis& twin, const Model& model,
+                               const ScaleWeights& weights, double target) noexcept {
+  if (twin.store().count() < kFewestEntries || !evidence_.load(twin.store())) return -1.0;
+  evidence_.weigh(twin.store(), weights);
+  const ModelFit fit = fitter_.fit(model);
+  return fit.ok ? fit.held_out_nmse * evidence_.total.at(kTarget, kTarget) / target : -1.0;
+}
+
+bool Explainer::apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& e) noexcept {
+  const auto mean_of = [&](const ScaleWeights& weights, double target) {
+    const double first = left_of_twin(twins.base, e.base_model, weights, target);
+    if (twins.other_noise == nullptr || first < 0.0) return first;
+    const double second = left_of_twin(*twins.other_noise, e.base_model, weights, target);
+    return second < 0.0 ? second : 0.5 * (first + second);
   };
-  evidence_.weigh(store, e.base_weight);
-  const ModelFit base = fitter_.fit(e.base_model);
-  if (!base.ok) return false;
-  e.base_floor_nmse = left(base, e.base_target);
-  const bool has_columns = e.step_count > 0 && e.step[0].chosen.count > 0;
-  if (has_columns) {
-    const ModelFit with = fitter_.fit(e.base_model.with(e.step[0].chosen));
-    const double gain = with.ok ? 1.0 - with.held_out_nmse / base.held_out_nmse : 0.0;
-    if (e.step[0].gain < kTwinGains * gain) drop_steps(e);
-  } else if (e.step_count > 0 && e.step[0].gain < kTwinGains * twin.impulses().share()) {
-    drop_steps(e);  // large residuals are rare in time on the twin too: those of sticking
-  }
-  evidence_.weigh(store, e.weight);
-  const ModelFit final = fitter_.fit(e.base_model);
-  if (!final.ok) return false;
-  e.floor_nmse = left(final, e.target);
+  const double base_floor = mean_of(e.base_weight, e.base_target);
+  if (base_floor < 0.0) return false;
+  e.base_floor_nmse = base_floor;
+  if (!beats_twin(twins.base, e)) drop_steps(e);
+  const Model remembering = remembering_part(e);
+  const bool remembers = twins.remembering != nullptr && remembering.count > e.base_count;
+  const double floor = remembers ? left_of_twin(*twins.remembering, remembering, e.weight, e.target)
+                                 : mean_of(e.weight, e.target);
+  if (floor < 0.0) return false;
+  e.floor_nmse = floor;
   conclude(impacts, e);
   return true;
+}
+
+/// Large residuals, too, are rare in time on a twin without impacts: those of sticking.
+bool Explainer::beats_twin(const Diagnosis& twin, const Explanation& e) noexcept {
+  if (e.step_count == 0) return true;
+  double gain = twin.impulses().share();
+  if (e.step[0].chosen.count > 0) {
+    const double without = left_of_twin(twin, e.base_model, e.base_weight, e.base_target);
+    const double with =
+        left_of_twin(twin, e.base_model.with(e.step[0].chosen), e.base_weight, e.base_target);
+    gain = with < 0.0 ? 0.0 : 1.0 - with / without;
+  }
+  return e.step[0].gain >= kTwinGains * gain;
 }
 
 }  // namespace dampline::effect

@@ -15,17 +15,15 @@ constexpr double kVerySignificant = 3.3;
 constexpr double kLaterGain = 0.012;        // of a later effect, with kLaterT and kLaterZ
 constexpr double kLaterSensorGain = 0.015;  // beside a law with memory
 constexpr double kLaterMemoryGain = 0.035;
-constexpr double kSkewBesideMemoryGain = 0.05;
+constexpr double kSkewBesideMemoryGain = 0.065;
 constexpr double kLookalikeGain = 0.06;
+constexpr double kProductGain = 0.15;         // of springs beside two laws whose product is missing
+constexpr double kGainBesideSkewGain = 0.12;  // of the same channel
 constexpr double kLaterT = 3.5;
 constexpr double kLaterZ = 10.0;
 constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ: stops are seldom reached
 constexpr double kLaterClearZ = 8.0;
 constexpr double kFaintZ = 4.2;
-
-bool is_memory(Effect effect) noexcept {
-  return effect == Effect::kPreslidingHysteresis || effect == Effect::kBacklash;
-}
 
 bool is_even_spring(Effect effect) noexcept {
   return effect == Effect::kQuadraticStiffness || effect == Effect::kAsymmetricStiffness;
@@ -35,24 +33,52 @@ bool is_bent_spring(Effect effect) noexcept {
 }
 
 /// The gain that a later effect needs beside one that is in the model. What a late channel leaves,
-/// in second order, looks like a mode or like friction that builds up; friction that builds up to
-/// other levels in each direction, like progressive friction. The deflection comes without its
-/// mean, so that a stop or a curved spring is not seen from its centre and leaves something even.
-double gain_beside(Effect known, Effect effect) noexcept {
-  if (known == Effect::kTimeSkew && (effect == Effect::kUnmodelledMode || is_memory(effect)))
+/// in second order, looks like a mode or like friction that builds up, and its friction, which
+/// leaps late, like a wrong gain of the same channel; friction that builds up to other levels in
+/// each direction, like progressive friction. The deflection comes without its mean, so that a stop
+/// or a curved spring is not seen from its centre and leaves something even.
+double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept {
+  const Effect known = beside.effect;
+  const Effect effect = candidate.effect;
+  const bool one_channel = known == Effect::kTimeSkew && beside.form == candidate.form;
+  if (one_channel && effect == Effect::kGainError) return kGainBesideSkewGain;
+  if (known == Effect::kTimeSkew && (effect == Effect::kUnmodelledMode || has_memory(effect)))
     return kLookalikeGain;
   if (is_bent_spring(known) && is_even_spring(effect)) return kLaterMemoryGain;
-  if (is_memory(effect)) return kLaterMemoryGain;
+  if (has_memory(effect)) return kLaterMemoryGain;
   if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
-  if (!is_memory(known)) return kLaterGain;
+  if (!has_memory(known)) return kLaterGain;
   if (effect == Effect::kTimeSkew) return kSkewBesideMemoryGain;
   return effect == Effect::kProgressiveFriction ? kLaterMemoryGain : kLaterSensorGain;
 }
-double later_gain(const Model& model, Effect effect) noexcept {
-  double gain = kLaterGain;
+
+/// Friction that builds up to a level which itself grows with the deflection: the model has their
+/// sum, and what their product adds to it is even in the deflection.
+bool lacks_product(const Model& model) noexcept {
+  bool memory = false;
+  bool progressive = false;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    memory = memory || has_memory(model.effect[i].effect);
+    progressive = progressive || model.effect[i].effect == Effect::kProgressiveFriction;
+  }
+  return memory && progressive;
+}
+
+double later_gain(const Model& model, const Candidate& candidate) noexcept {
+  const bool springs = is_even_spring(candidate.effect) || is_bent_spring(candidate.effect);
+  double gain = springs && lacks_product(model) ? kProductGain : kLaterGain;
   for (std::size_t i = 0; i < model.count; ++i)
-    gain = std::max(gain, gain_beside(model.effect[i].effect, effect));
+    gain = std::max(gain, gain_beside(model.effect[i], candidate));
   return gain;
+}
+
+/// What the grid of lengths and the velocity's phase leave of a law with memory looks like a late
+/// frame, and other effects may be less than that.
+bool is_late_memory(const Model& model, Effect effect) noexcept {
+  if (effect != Effect::kTimeSkew) return false;
+  for (std::size_t i = 0; i < model.count; ++i)
+    if (has_memory(model.effect[i].effect)) return true;
+  return false;
 }
 
 bool passes_later(const Step& step, double gain) noexcept {
@@ -106,9 +132,10 @@ Verdict judge_step(const Model& model, bool first, bool best, const Step& step) 
     const bool joins = is_faint(step) || (best && passes_first(step));
     return joins ? Verdict::kYes : Verdict::kNo;
   }
-  if (passes_later(step, later_gain(model, step.chosen.effect))) return Verdict::kYes;
+  if (passes_later(step, later_gain(model, step.chosen))) return Verdict::kYes;
   // The best is but an imperfection of what is in the model: so may be all that explain less.
-  return passes_later(step, kLaterGain) ? Verdict::kStop : Verdict::kNo;
+  const bool hides = passes_later(step, kLaterGain) && !is_late_memory(model, step.chosen.effect);
+  return hides ? Verdict::kStop : Verdict::kNo;
 }
 
 }  // namespace dampline::effect
