@@ -41,6 +41,8 @@ TEST(Rules, TheSecondNeedsASureCoefficient) {
   // Stops are seldom reached: few blocks gain, but those much.
   EXPECT_EQ(later(Effect::kViscous, step(Effect::kBumpStop, 0.07, 1.5, 20.0)), Verdict::kYes);
   EXPECT_EQ(later(Effect::kViscous, step(Effect::kBumpStop, 0.02, 1.5, 20.0)), Verdict::kNo);
+  EXPECT_EQ(later(Effect::kViscous, step(Effect::kCubicStiffness, 0.04, 2.3, 16.0)), Verdict::kYes);
+  EXPECT_EQ(later(Effect::kViscous, step(Effect::kStribeck, 0.04, 2.3, 16.0)), Verdict::kNo);
 }
 
 TEST(Rules, ImperfectionsOfWhatIsKnownAreNoEffects) {

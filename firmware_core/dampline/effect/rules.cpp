@@ -18,10 +18,10 @@ constexpr double kLaterMemoryGain = 0.035;
 constexpr double kSkewBesideMemoryGain = 0.065;
 constexpr double kLookalikeGain = 0.06;
 constexpr double kProductGain = 0.15;         // of springs beside two laws whose product is missing
-constexpr double kGainBesideSkewGain = 0.12;  // of the same channel
+constexpr double kGainBesideSkewGain = 0.10;  // of the same channel
 constexpr double kLaterT = 3.5;
 constexpr double kLaterZ = 10.0;
-constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ: stops are seldom reached
+constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ
 constexpr double kLaterClearZ = 8.0;
 constexpr double kFaintZ = 4.2;
 
@@ -83,8 +83,9 @@ bool is_late_memory(const Model& model, Effect effect) noexcept {
 
 bool passes_later(const Step& step, double gain) noexcept {
   if (step.gain <= gain) return false;
-  const bool clear =
-      step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kLaterClearT);
+  // Stops are seldom reached: few blocks gain.
+  const double enough = is_bent_spring(step.chosen.effect) ? kSignificant : kLaterClearT;
+  const bool clear = step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > enough);
   return clear ? step.coefficient_t > kLaterClearZ
                : step.coefficient_t > kLaterZ && step.block_t > kLaterT;
 }
