@@ -16,8 +16,9 @@ enum class Column : std::uint8_t {
   kDeflection,
   kVelocity,
   kForce,
+  kAccel,  ///< second derivative of the deflection, measured beside it
 };
-inline constexpr std::size_t kColumns = 7;
+inline constexpr std::size_t kColumns = 8;
 
 /// Canonical header names, indexed by Column.
 inline constexpr std::array<std::string_view, kColumns> kColumnNames{"time_s",
@@ -26,7 +27,8 @@ inline constexpr std::array<std::string_view, kColumns> kColumnNames{"time_s",
                                                                      "wheelset2_accel_mps2",
                                                                      "deflection_m",
                                                                      "velocity_mps",
-                                                                     "force_n"};
+                                                                     "force_n",
+                                                                     "accel_mps2"};
 
 [[nodiscard]] constexpr std::size_t index(Column column) noexcept {
   return static_cast<std::size_t>(column);

@@ -71,12 +71,13 @@ SourceKind detect_columns(const InputConfig& input, const std::string& path) {
   const auto header = drivers::CsvReader::header_of(path);
   if (!header.ok()) throw RunError{header.error_text()};
   const auto truck = missing(input, kTruckColumns, header.value());
-  const auto rig = missing(input, kRigColumns, header.value());
+  auto rig = missing(input, kRigColumns, header.value());
+  if (input.sample_rate_is_set) std::erase(rig, input.header(Column::kTime));
   if (truck.empty()) return SourceKind::kTruckCsv;
   if (rig.empty()) return SourceKind::kRigCsv;
   fail(path,
        fmt::format("for a truck record the columns {} are missing, for a rig {}; found {}. [input."
-                   "columns] maps other names",
+                   "columns] maps other names; lines before the header begin with #",
                    fmt::join(truck, ", "), fmt::join(rig, ", "), fmt::join(header.value(), ", ")));
 }
 

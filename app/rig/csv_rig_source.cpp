@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/error.hpp"
+#include "app/rig/uniform_record.hpp"
 #include "drivers/csv/csv_reader.hpp"
 
 namespace dampline::app {
@@ -15,9 +16,9 @@ namespace {
 
 using drivers::CsvReader;
 
-/// In the order of a row.
-constexpr std::array<Column, 4> kOrder{Column::kTime, Column::kDeflection, Column::kForce,
-                                       Column::kVelocity};
+/// In the order of a row: those that a record must have go first.
+constexpr std::array kOrder{Column::kDeflection, Column::kForce, Column::kTime, Column::kVelocity,
+                            Column::kAccel};
 
 drivers::CsvConfig csv_config(const std::string& path, const InputConfig& input,
                               bool skip_bad_lines) {
@@ -25,9 +26,12 @@ drivers::CsvConfig csv_config(const std::string& path, const InputConfig& input,
   out.path = path;
   for (const Column column : kOrder) {
     const std::string canonical{name(column)};
-    (column == Column::kVelocity ? out.optional : out.required).push_back(canonical);
+    const bool required = column == Column::kDeflection || column == Column::kForce ||
+                          (column == Column::kTime && !input.sample_rate_is_set);
+    (required ? out.required : out.optional).push_back(canonical);
     if (!input.columns[index(column)].empty()) out.renamed[canonical] = input.header(column);
   }
+  out.time_column.clear();  // rounded times may stand still; RigClock judges them
   out.skip_bad_lines = skip_bad_lines;
   return out;
 }
@@ -35,7 +39,7 @@ drivers::CsvConfig csv_config(const std::string& path, const InputConfig& input,
 class CsvRigSource final : public RigSource {
  public:
   CsvRigSource(std::unique_ptr<CsvReader> reader, const InputConfig& input)
-      : reader_{std::move(reader)}, scale_{input.scale} {}
+      : reader_{std::move(reader)}, scale_{input.scale}, interval_s_{1.0 / input.sample_rate_hz} {}
 
   bool next(RigLine& line) override {
     std::array<double, kOrder.size()> row{};
@@ -43,7 +47,10 @@ class CsvRigSource final : public RigSource {
     while (rows && rows.value() == 0) rows = reader_->read(row);  // a pipe that has nothing yet
     if (!rows && rows.error() == Errc::kEndOfStream) return false;
     if (!rows) throw RunError{reader_->error_text()};
-    line = {reader_->health().line, scaled(row, 0), scaled(row, 1), scaled(row, 3), scaled(row, 2)};
+    line = {reader_->health().line, scaled(row, 2), scaled(row, 0),
+            scaled(row, 3),         scaled(row, 1), scaled(row, 4)};
+    if (!reader_->has(name(Column::kTime))) line.time_s = static_cast<double>(rows_) * interval_s_;
+    ++rows_;
     return true;
   }
 
@@ -68,6 +75,8 @@ class CsvRigSource final : public RigSource {
 
   std::unique_ptr<CsvReader> reader_;
   std::array<double, kColumns> scale_;
+  double interval_s_;  ///< where the record has no time
+  std::uint64_t rows_{0};
 };
 
 }  // namespace
@@ -78,11 +87,11 @@ RigRecord csv_rig_record(const std::string& path, const InputConfig& input, bool
     throw RunError{
         "-: a rig's record is read several times and cannot come from standard input; expected a "
         "file"};
-  return {path, [config, input]() -> std::unique_ptr<RigSource> {
-            auto reader = CsvReader::open(config);
-            if (!reader) throw RunError{reader.error_text()};
-            return std::make_unique<CsvRigSource>(std::move(reader.value()), input);
-          }};
+  return uniform_record({path, [config, input]() -> std::unique_ptr<RigSource> {
+                           auto reader = CsvReader::open(config);
+                           if (!reader) throw RunError{reader.error_text()};
+                           return std::make_unique<CsvRigSource>(std::move(reader.value()), input);
+                         }});
 }
 
 }  // namespace dampline::app

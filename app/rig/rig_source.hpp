@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/run/result.hpp"
 
@@ -17,6 +18,7 @@ struct RigLine {
   double deflection_m{0.0};
   double velocity_mps{std::numeric_limits<double>::quiet_NaN()};
   double force_n{0.0};
+  double accel_mps2{std::numeric_limits<double>::quiet_NaN()};
 };
 
 /// A rig's record, row by row.
@@ -37,6 +39,7 @@ class RigSource {
 struct RigRecord {
   std::string name;  ///< what errors call it
   std::function<std::unique_ptr<RigSource>()> open;
+  std::vector<std::string> notes{};  ///< what was done to the rows, a sentence each
 };
 
 }  // namespace dampline::app

@@ -15,6 +15,7 @@
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/explanation_json.hpp"
 #include "app/explain/rig/explain_rig.hpp"
+#include "app/identify/recognised_columns.hpp"
 #include "app/identify/record_rate.hpp"
 #include "app/report/stage_report.hpp"
 #include "app/rig/csv_rig_source.hpp"
@@ -66,9 +67,11 @@ Findings explain_truck_record(const Config& config, const Options& options, bool
           {found.identified, write_run_toml(config, found.inputs), found.state}};
 }
 
-Findings explain_rig_records(const Config& config, const Options& options) {
-  const RigExplanation found = explain_rig(
+Findings explain_rig_records(const Config& config, const Options& options,
+                             const std::vector<std::string>& notes) {
+  RigExplanation found = explain_rig(
       config, {options.records, options.validation, options.reference, options.skip_bad_lines});
+  found.notes.insert(found.notes.begin(), notes.begin(), notes.end());
   std::vector<InputFile> inputs;
   for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
   for (const std::string& path : options.validation)
@@ -76,19 +79,21 @@ Findings explain_rig_records(const Config& config, const Options& options) {
   RunResult first = identify_rig(
       csv_rig_record(options.records.front(), config.input, options.skip_bad_lines), config);
   first.evidence = found.evidence;
+  first.notes.insert(first.notes.end(), found.notes.begin(), found.notes.end());
   return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};
 }
 
 int explain(const Options& options) {
-  const Config given = options.config.empty() ? Config{} : load_config(options.config);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place, options.force};
   const SourceOptions first{options.records.front(), options.skip_bad_lines};
-  const SourceKind kind = detect_source(given, first);
-  const Config config = with_record_rate(given, first, kind);
+  const RecognisedColumns seen =
+      recognise_columns(options.config.empty() ? Config{} : load_config(options.config), first);
+  const SourceKind kind = detect_source(seen.config, first);
+  const Config config = with_record_rate(seen.config, first, kind);
   const bool show_progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   Findings found = kind == SourceKind::kRigCsv
-                       ? explain_rig_records(config, options)
+                       ? explain_rig_records(config, options, seen.notes)
                        : explain_truck_record(config, options, show_progress);
   found.files.result.evidence.explanation = found.json;
   stage_files(found.files, directory);

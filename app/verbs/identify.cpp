@@ -13,6 +13,7 @@
 #include "app/config/config.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
+#include "app/identify/recognised_columns.hpp"
 #include "app/identify/record_rate.hpp"
 #include "app/live/identify_live.hpp"
 #include "app/report/stage_report.hpp"
@@ -88,14 +89,15 @@ Config config_of(const Options& options) {
 }
 
 int identify(const Options& options) {
-  const Config given = config_of(options);
-  const SourceKind kind = detect_source(given, options.source);
-  const Config config = with_record_rate(given, options.source, kind);
+  const RecognisedColumns seen = recognise_columns(config_of(options), options.source);
+  const SourceKind kind = detect_source(seen.config, options.source);
+  const Config config = with_record_rate(seen.config, options.source, kind);
   check_live_flags(options, kind);
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place,
                          options.force};  // first: a place that cannot be written costs no work
   Identified found = find(options, config, kind, place);
+  found.result.notes.insert(found.result.notes.begin(), seen.notes.begin(), seen.notes.end());
   const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
                        std::move(found.state)};
   stage_files(files, directory);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "drivers/csv/csv_line.hpp"
 #include "drivers/csv/csv_reader.hpp"
@@ -30,6 +31,12 @@ std::string_view why_no_header(std::string_view line, const std::vector<std::str
   return {};
 }
 
+/// How comments begin: as Python, MATLAB and C write them. 0: it is none.
+std::size_t comment_mark(std::string_view line) noexcept {
+  if (line.starts_with('#') || line.starts_with('%')) return 1;
+  return line.starts_with("//") ? 2 : 0;
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -38,6 +45,8 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
+bool CsvReader::is_comment(std::string_view line) noexcept { return comment_mark(line) > 0; }
+
 Outcome<bool> CsvReader::read_header() {
   std::string_view line;
   LineReader::Status status{};
@@ -45,13 +54,15 @@ Outcome<bool> CsvReader::read_header() {
     return Failure{Errc::kMalformed,
                    fmt::format("{}: found {}, expected {}", reader_.name(), found, kExample)};
   };
+  std::string comment;
   do {
+    if (!line.empty()) comment = line.substr(comment_mark(line));
     while ((status = reader_.next(line)) == LineReader::Status::kNothingYet) {
       static_cast<void>(reader_.wait(std::chrono::seconds{1}));
     }
     if (reader_.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
-  } while (status == LineReader::Status::kLine && (line.empty() || line.front() == '#'));
+  } while (status == LineReader::Status::kLine && (line.empty() || is_comment(line)));
   if (status == LineReader::Status::kError) {
     return Failure{Errc::kIo, fmt::format("{}: cannot be read: {}", reader_.name(),
                                           std::strerror(reader_.error_number()))};
@@ -59,6 +70,15 @@ Outcome<bool> CsvReader::read_header() {
   if (status == LineReader::Status::kEnd || line.empty()) return malformed("nothing: it is empty");
   separator_ = separator_of(line);
   header_ = cells_of(line, separator_);
+  if (header_.size() > 1 && std::all_of(header_.begin(), header_.end(), is_number)) {
+    // The names in the last comment, as NumPy writes them.
+    std::vector<std::string> names = cells_of(comment, separator_);
+    if (names.size() == header_.size() && std::none_of(names.begin(), names.end(), is_number)) {
+      header_ = std::move(names);
+      first_row_ = line;
+      return true;
+    }
+  }
   if (const std::string_view kind = why_no_header(line, header_); !kind.empty()) {
     return malformed(fmt::format("{} beginning {}", kind, quote(line)));
   }

@@ -29,6 +29,16 @@ std::size_t end_of_cell(std::string_view rest, char separator) noexcept {
   return rest.size();
 }
 
+/// Words that programs write where they have no number.
+bool stands_for_none(std::string_view cell) noexcept {
+  constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
+  return std::any_of(kWords.begin(), kWords.end(), [cell](std::string_view word) {
+    return std::equal(cell.begin(), cell.end(), word.begin(), word.end(), [](char a, char b) {
+      return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+    });
+  });
+}
+
 bool parse(std::string_view text, double& number) noexcept {
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, number);
@@ -66,7 +76,7 @@ std::vector<std::string> cells_of(std::string_view header, char separator) {
 }
 
 bool read_number(std::string_view cell, char separator, double& number) noexcept {
-  if (cell.empty()) {
+  if (cell.empty() || stands_for_none(cell)) {
     number = std::numeric_limits<double>::quiet_NaN();
     return true;
   }

@@ -16,7 +16,8 @@ char separator_of(std::string_view header) noexcept;
 /// The names of a header line.
 std::vector<std::string> cells_of(std::string_view header, char separator);
 
-/// Reads a number: decimal or nan or inf in any case, with an optional +; an empty cell is NaN.
+/// Reads a number: decimal or nan or inf in any case, with an optional +; an empty cell,
+/// NA, null, none and - are NaN.
 /// Where the separator is not a comma, a decimal comma is read as a point. False when it is
 /// anything else.
 bool read_number(std::string_view cell, char separator, double& number) noexcept;

@@ -57,6 +57,7 @@ Result<std::size_t> CsvReader::do_read(std::span<double> out) noexcept {
 }
 
 CsvReader::Step CsvReader::read_one(std::span<double> row) noexcept {
+  if (!first_row_.empty()) return take_line(std::exchange(first_row_, {}), row);
   std::string_view line;
   switch (reader_.next(line)) {
     case LineReader::Status::kLine:
@@ -77,8 +78,25 @@ CsvReader::Step CsvReader::read_one(std::span<double> row) noexcept {
                                      std::strerror(reader_.error_number())));
 }
 
+/// Words in every cell of the first line after the header.
+bool CsvReader::take_units(std::string_view line) noexcept {
+  if (health_.rows > 0 || !units_.empty()) return false;
+  std::string_view rest = line;
+  std::size_t cells = 0;
+  bool any = false;
+  double number = 0.0;
+  for (bool more = true; more; ++cells) {
+    const std::string_view cell = take_cell(rest, separator_, more);
+    if (!cell.empty() && read_number(cell, separator_, number)) return false;
+    any = any || !cell.empty();
+  }
+  if (!any || cells != header_.size()) return false;
+  units_ = cells_of(line, separator_);
+  return true;
+}
+
 CsvReader::Step CsvReader::take_line(std::string_view line, std::span<double> row) noexcept {
-  if (line.empty() || line.front() == '#') {
+  if (line.empty() || is_comment(line) || take_units(line)) {
     ++health_.ignored;
     return Step::kNoRow;
   }

@@ -26,10 +26,12 @@ struct CsvConfig {
 /// A table in text as a source of rows: a header line with names, then one line per row.
 ///
 /// The separator is a comma, semicolon or tab, as the header has it; lines that begin with # are
-/// comments; \r\n, quoted cells and a UTF-8 byte order mark are borne; columns not asked for are
-/// listed by ignored_columns() and not parsed. A short or long row, a cell that is no number, and a
-/// time that does not increase are errors with file, line and column, or counted with
-/// skip_bad_lines. A last line without its end may be incomplete: it is dropped and sets truncated.
+/// comments, and so are those with % or //; names in the last comment before numbers without a
+/// header are the header, words in every cell of the line after it are units; \r\n, quoted cells
+/// and a UTF-8 byte order mark are borne; columns not asked for are listed by ignored_columns() and
+/// not parsed. A short or long row, a cell that is no number, and a time that does not increase are
+/// errors with file, line and column, or counted with skip_bad_lines. A last line without its end
+/// may be incomplete: it is dropped and sets truncated.
 class CsvReader final : public hal::RowSource {
  public:
   /// Reads up to the header. Errors: no such file, empty, no header, binary data, a candump log, a
@@ -41,6 +43,8 @@ class CsvReader final : public hal::RowSource {
   /// Why read() returned kMalformed or kIo.
   [[nodiscard]] const std::string& error_text() const noexcept { return error_; }
   [[nodiscard]] const std::vector<std::string>& header() const noexcept { return header_; }
+  /// Of each column of the header, once the first row was read; empty: the file has none.
+  [[nodiscard]] const std::vector<std::string>& units() const noexcept { return units_; }
   [[nodiscard]] const std::vector<std::string>& ignored_columns() const noexcept {
     return ignored_;
   }
@@ -59,6 +63,8 @@ class CsvReader final : public hal::RowSource {
   [[nodiscard]] std::string column_name(const CsvConfig& config,
                                         const std::string& canonical) const;
   Step read_one(std::span<double> row) noexcept;
+  [[nodiscard]] static bool is_comment(std::string_view line) noexcept;
+  bool take_units(std::string_view line) noexcept;
   Step take_line(std::string_view line, std::span<double> row) noexcept;
   Step end_of_file() noexcept;
   Step bad_line(std::size_t column, std::string found, std::string expected) noexcept;
@@ -68,6 +74,8 @@ class CsvReader final : public hal::RowSource {
   LineReader reader_;
   char separator_{','};
   std::vector<std::string> header_;
+  std::vector<std::string> units_;
+  std::string first_row_;           // that was read in search of the header
   std::vector<std::string> names_;  // of a row's numbers
   std::vector<std::string> ignored_;
   std::vector<std::size_t> place_of_;  // header column -> place in the row, or kUnused

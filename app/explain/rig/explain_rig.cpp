@@ -9,6 +9,7 @@
 
 #include "app/error.hpp"
 #include "app/explain/rig/rig_evidence_points.hpp"
+#include "app/explain/rig/rig_gain.hpp"
 #include "app/explain/rig/rig_search.hpp"
 
 namespace dampline::app {
@@ -118,10 +119,15 @@ RigExplanation explain_rig(const Config& config, const RigExplainOptions& option
       throw RunError{fmt::format("{}: found {} usable samples, expected at least 500", path,
                                  records.back().size())};
   }
+  for (const RigSeries& record : records) check_rates(record);
   RigSearch search{config, records};
   RigExplanation out = search.run();
+  for (const RigSeries& record : records)
+    for (const std::string& note : record.notes)
+      out.notes.push_back(records.size() > 1 ? fmt::format("{}: {}", record.record, note) : note);
   if (!out.base.fit.ok)
     throw RunError{fmt::format("{}: too little motion to determine the model", records[0].record)};
+  judge_gains(records, out);
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(
         out, read_rig_series(path, config, options.skip_bad_lines, options.reference_column)));

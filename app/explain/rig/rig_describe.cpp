@@ -98,6 +98,10 @@ void RigSearch::describe_drift(Chosen& c, const Judged& now, const ColumnSet& se
       library_.columns[static_cast<std::size_t>(set[static_cast<std::size_t>(at)])];
   const double change = now.fit.theta[at];
   const double std = std::sqrt(std::max(now.fit.covariance(at, at), 0.0));
+  if (drifting.kind == RigColumn::Kind::kOne) {
+    c.step.parameters.front() = {c.step.parameters.front().name, change, std, "N"};
+    return;
+  }
   double of = 0.0;
   for (std::size_t i = 0; i < set.size(); ++i) {
     const RigColumn& steady = library_.columns[static_cast<std::size_t>(set[i])];

@@ -58,7 +58,8 @@ Json step_json(const RigExplanation& e, const RigStep& step) {
           {"held_out_nmse_after", step.held_out_after},
           {"parameters", parameters_json(step.parameters)},
           {"evidence",
-           {{"gain", step.gain},
+           {{"of", step.of},
+            {"gain", step.gain},
             {"block_t", step.block_t},
             {"left_over_floor", floor_json(e.final, e.final.left_over_floor())}}},
           {"note", note_of(e, step)},
@@ -150,6 +151,7 @@ std::string to_json(const RigExplanation& e) {
       {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
       {"validation", validation},
       {"faults", Json::array()},
+      {"notes", e.notes},
       {"force", e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured"},
       {"signature", signature_json(e.signature, {"deflection", "velocity", "speed"}, unknown)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -165,7 +167,8 @@ std::string summarize(const RigExplanation& e) {
   text += model_text("base", e.base) + lines_of(e.base.parameters);
   for (const RigStep& step : e.steps) {
     text +=
-        fmt::format("+ {}: held-out rrse {:.3f} -> {:.3f}, t {:.1f}\n", step.effect,
+        fmt::format("+ {}: {}rrse {:.3f} -> {:.3f}, t {:.1f}\n", step.effect,
+                    step.of == "force_n" ? "held-out " : step.of + ": ",
                     std::sqrt(step.held_out_before), std::sqrt(step.held_out_after), step.block_t);
     text += lines_of(step.parameters);
     for (const JudgedCandidate& c : step.runners_up)
@@ -183,6 +186,7 @@ std::string summarize(const RigExplanation& e) {
     text += fmt::format(" (slip at the start {:.1f} mm, from the first second of force)\n",
                         1e3 * v.start_m);
   }
+  for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
 }
 

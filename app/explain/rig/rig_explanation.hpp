@@ -13,6 +13,7 @@ namespace dampline::app {
 /// One effect that was added to a rig's force.
 struct RigStep {
   std::string effect;
+  std::string of{"force_n"};       ///< whose error is meant
   std::vector<std::string> terms;  ///< of the model with it
   double held_out_before{0.0};     ///< nmse
   double held_out_after{0.0};
@@ -59,9 +60,10 @@ struct RigExplanation {
   std::vector<RigValidated> validation;
   double filter_hz{0.0};  ///< corner of the test function; 0: none
   bool whole_records{false};
-  Evidence evidence;    ///< but for its JSON
-  Signature signature;  ///< of what the final model leaves
-  std::string alike;    ///< effects that explain alike, so that none is named; empty
+  Evidence evidence;               ///< but for its JSON
+  Signature signature;             ///< of what the final model leaves
+  std::vector<std::string> notes;  ///< how the records were read, a sentence each
+  std::string alike;               ///< effects that explain alike, so that none is named; empty
   [[nodiscard]] const char* verdict() const;
   /// No more is left than noise and resolution make.
   [[nodiscard]] bool is_complete() const noexcept;

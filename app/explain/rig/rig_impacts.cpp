@@ -106,9 +106,10 @@ RigImpacts find_impacts(const std::vector<RigSeries>& records,
   RigImpacts out;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const RigSeries& record = records[r];
+    out.left_out.emplace_back(Eigen::VectorXd::Zero(record.size()));
+    if (kReachS < 3.0 * record.interval_s) continue;  // not seen apart from a reversal
     const auto reach =
         std::max(kLeastReach, static_cast<Eigen::Index>(kReachS / record.interval_s));
-    out.left_out.emplace_back(Eigen::VectorXd::Zero(record.size()));
     std::vector<Peak> peaks = peaks_of(sharp_part(left_n[r], reach), reach);
     std::erase_if(peaks, [&](const Peak& p) { return is_near_reversal(record, p.at); });
     const double share = 2.0 * static_cast<double>(reach) * static_cast<double>(peaks.size()) /

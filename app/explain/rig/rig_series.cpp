@@ -19,6 +19,8 @@
 namespace dampline::app {
 namespace {
 
+constexpr double kSlowHz = 5.0;
+
 Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -40,9 +42,26 @@ std::vector<double> read_column(const std::string& path, const std::string& colu
   return out;
 }
 
+/// Where no deflection is the rest position, their mean is: a spring, a stop or a curve about a
+/// zero that lies outside the motion says nothing.
+void centre(RigSeries& series) {
+  if (series.size() == 0) return;
+  const double low = series.deflection_m.minCoeff();
+  const double high = series.deflection_m.maxCoeff();
+  if (low <= 0.0 && high >= 0.0) return;
+  const double mean = series.deflection_m.mean();
+  series.deflection_m.array() -= mean;
+  series.notes.push_back(
+      fmt::format("Zero deflection lies outside the motion, {:.6g} to {:.6g} m: counted from the "
+                  "mean, {:.6g} m.",
+                  low, high, mean));
+}
+
 struct Rows {
   std::vector<RigSample> samples;
   std::vector<double> time_s;
+  std::vector<double> accel_mps2;
+  bool has_accel{false};
 };
 
 Rows read_rows(const RigRecord& record, RigClock& clock, RigSurvey& survey) {
@@ -52,6 +71,8 @@ Rows read_rows(const RigRecord& record, RigClock& clock, RigSurvey& survey) {
   while (source->next(line)) {
     out.samples.push_back(clock.sample(line));
     out.time_s.push_back(line.time_s);
+    out.accel_mps2.push_back(line.accel_mps2);
+    out.has_accel = out.has_accel || std::isfinite(line.accel_mps2);
     survey.update(out.samples.back());
   }
   clock.check_uniform();
@@ -65,6 +86,7 @@ RigSeries read_rig_series(const std::string& path, const Config& config, bool sk
   const RigRecord record = csv_rig_record(path, config.input, skip_bad_lines);
   RigSeries out;
   out.record = path;
+  out.notes = record.notes;
   RigClock clock{record.name, measure_interval_s(record)};
   const bool measured = record.open()->has_velocity();
   RigSurvey survey{1.0 / clock.interval_s(), measured};
@@ -83,7 +105,7 @@ RigSeries read_rig_series(const std::string& path, const Config& config, bool sk
 
   RigMotionEstimator estimator{out.config};
   const auto late = static_cast<std::size_t>(estimator.latency_samples());
-  std::array<std::vector<double>, 5> series;
+  std::array<std::vector<double>, 6> series;
   for (std::size_t i = 0; i < rows.samples.size(); ++i) {
     const RigSample& sample = rows.samples[i];
     const bool gap = i > 0 && sample.tick != rows.samples[i - 1].tick + 1;
@@ -99,12 +121,19 @@ RigSeries read_rig_series(const std::string& path, const Config& config, bool sk
     series[2].push_back(motion.velocity_mps);
     series[3].push_back(motion.force_n);
     if (reference.size() == rows.samples.size()) series[4].push_back(reference[row]);
+    if (rows.has_accel) series[5].push_back(rows.accel_mps2[row]);
   }
   out.time_s = vector_of(series[0]);
   out.deflection_m = vector_of(series[1]);
   out.velocity_mps = vector_of(series[2]);
   out.force_n = vector_of(series[3]);
   out.reference_n = vector_of(series[4]);
+  out.accel_mps2 = vector_of(series[5]);
+  if (1.0 / out.interval_s < kSlowHz)
+    out.notes.push_back(fmt::format(
+        "One sample every {:.4g} s: is time_s in s? If it is in ms: [input.scale] time_s = 0.001",
+        out.interval_s));
+  centre(out);
   return out;
 }
 

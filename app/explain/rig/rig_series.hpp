@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "dampline/rig/rig_config.hpp"
@@ -12,6 +13,7 @@ namespace dampline::app {
 /// left out; over a gap the motion goes on.
 struct RigSeries {
   std::string record;
+  std::vector<std::string> notes;  ///< what was done to the record, a sentence each
   double interval_s{0.0};
   bool has_gap{false};
   RigConfig config;  ///< test function and derivative, as the record's noise permits
@@ -20,6 +22,7 @@ struct RigSeries {
   Eigen::VectorXd velocity_mps;
   Eigen::VectorXd force_n;
   Eigen::VectorXd reference_n;  ///< another prediction of the force, NaN where there is none; empty
+  Eigen::VectorXd accel_mps2;   ///< measured beside the deflection; empty: it is not
   Eigen::VectorXd left_out;     ///< 1: takes no part in a fit or its error; empty: none
   double noise_m{0.0};          ///< of the deflection, rms
   double start_m{0.0};          ///< slip of all friction elements at the first sample

@@ -13,8 +13,23 @@ namespace {
 constexpr double kLeastGain = 0.1;
 constexpr double kSignificant = 3.0;
 constexpr double kClearMemory = 0.2;
-constexpr double kBetter = 0.85;      // of what the best column leaves
+constexpr double kBetter = 0.85;  // of what the best column leaves
+constexpr double kResolved = 0.03;
 constexpr double kStepPlace = 0.029;  // of the record: a tenth, evenly spread
+
+/// Whether a derivative over one sample differs little from one over two: otherwise what a skew
+/// would be is an error of the velocity.
+bool is_resolved(const RigSeries& record) {
+  const Eigen::VectorXd& x = record.deflection_m;
+  double curved = 0.0;
+  double steps = 0.0;
+  for (Eigen::Index i = 2; i + 2 < x.size(); ++i) {
+    const double third = x[i + 2] - 2.0 * x[i + 1] + 2.0 * x[i - 1] - x[i - 2];
+    curved += third * third / 144.0 - 10.0 / 144.0 * record.noise_m * record.noise_m;
+    steps += 0.25 * (x[i + 1] - x[i - 1]) * (x[i + 1] - x[i - 1]);
+  }
+  return record.config.velocity_measured || curved < kResolved * kResolved * steps;
+}
 
 }  // namespace
 
@@ -91,7 +106,8 @@ std::optional<RigTrial> RigSearch::best_trial() const {
   };
   const RigTrialBase base = trial_base();
   std::optional<RigTrial> best;
-  if (library_.wants_skew && !is_taken("time_skew")) best = try_skew(records_, base);
+  const bool resolved = std::all_of(records_.begin(), records_.end(), is_resolved);
+  if (library_.wants_skew && resolved && !is_taken("time_skew")) best = try_skew(records_, base);
   std::optional<RigTrial> drift;
   if (library_.wants_drift && !is_taken("time_drift")) drift = try_drift(records_, base);
   if (drift && (!best || drift->gain > best->gain)) best = drift;

@@ -74,6 +74,8 @@ const char* drift_name(const RigColumn& column) {
       return "viscous";
     case RigColumn::Kind::kDeflection:
       return "stiffness";
+    case RigColumn::Kind::kOne:
+      return "offset";
     default:
       return nullptr;
   }
