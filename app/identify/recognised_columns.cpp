@@ -186,10 +186,9 @@ class Recogniser {
     }
     if (!there.factor) {
       if (!wanted.required) return;
-      problems_.emplace_back(
-          there.unit.empty()
-              ? fmt::format("\"{}\" has no unit", header)
-              : fmt::format("\"{}\": the unit \"{}\" is not known", header, there.unit));
+      problems_.emplace_back(there.unit.empty() ? fmt::format(R"("{}" has no unit)", header)
+                                                : fmt::format(R"("{}": the unit "{}" is not known)",
+                                                              header, there.unit));
       propose(wanted, header);
       return;
     }
