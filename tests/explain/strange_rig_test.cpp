@@ -179,6 +179,30 @@ TEST(AStrangersRig, CountsItsDeflectionFromTheMiddleWhereZeroIsFar) {
   expect_quadratic(explained(text));
 }
 
+/// Friction that rounds its sign, as simulations write it, beside the spring of the rig: neither is
+/// an effect that a damper lacks. Widths lie between those that are tried.
+TEST(AStrangersRig, MayHaveASmoothLawAndASpring) {
+  for (const double width_mps : {0.0007, 0.0023, 0.0081}) {
+    std::mt19937_64 random{73};
+    std::normal_distribution<double> noise;
+    std::string text = "time_s,deflection_m,force_n\n";
+    for (const Row& r : rows(uniform()))
+      text += fmt::format("{:.6f},{:.10f},{:.6f}\n", r.time_s, r.deflection_m,
+                          300.0 * std::tanh(r.velocity_mps / width_mps) + 1.1e5 * r.deflection_m +
+                              5.0 * noise(random));
+    const RigExplanation found = explained(text);
+    EXPECT_TRUE(found.steps.empty()) << summarize(found);
+    EXPECT_TRUE(found.is_complete()) << summarize(found);
+    ASSERT_FALSE(found.notes.empty());
+    EXPECT_THAT(found.notes[0], HasSubstr("A linear spring"));
+    EXPECT_NEAR(found.final.fit.theta[0], 300.0, 3.0);
+    for (const Parameter& p : found.final.parameters) {
+      if (p.name != "law_width") continue;
+      EXPECT_NEAR(p.value, width_mps, 0.1 * width_mps);
+    }
+  }
+}
+
 TEST(AStrangersRig, IsToldOfAForceThatDrifts) {
   std::string text = "time_s,deflection_m,force_n\n";
   for (const Row& r : rows(uniform())) {

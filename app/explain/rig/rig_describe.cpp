@@ -10,6 +10,8 @@ namespace {
 constexpr double kMemoryPlace = 0.1;  // of a length known to one step of its grid
 constexpr double kSpeedPlace = 0.3;
 constexpr double kGapPlace = 0.03;  // of the motion's size
+constexpr double kWidthPlace =
+    0.0132;  // of a width: the deviation within a step of the finest grid
 
 }  // namespace
 
@@ -34,6 +36,8 @@ void RigSearch::describe(RigModel& model, const Judged& judged, const ColumnSet&
       model.parameters.push_back({"offset", value, std, "N"});
     else if (library_.base_friction && set[i] == library_.friction[judged.width])
       model.parameters.push_back({"coulomb", value, std, "N"});
+    if (is_smooth(column, scale_))
+      model.parameters.push_back({"law_width", column.a, kWidthPlace * column.a, "m/s"});
   }
 }
 

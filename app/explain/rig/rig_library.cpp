@@ -17,6 +17,10 @@ constexpr double kNoiseTimes = 3.0;  // a shorter stop would follow the noise
 constexpr double kShortestMemory = 6e-3;
 constexpr double kMemoryRatio = 1.25;
 constexpr double kLongestMemory = 0.8;
+constexpr double kSharp = 3.0;  // times the width that an error of the velocity makes
+/// Widths of a smooth law of friction, of the speed's rms.
+constexpr double kNarrowest = 0.01;
+constexpr double kWidest = 0.3;  // a wider one is hardly another than viscous damping
 constexpr double kSteady = 1.3;  // between the speeds that a fifth of the time is below and above
 
 bool is_steady(const std::vector<RigSeries>& records) {
@@ -126,6 +130,10 @@ RigScale scale_of(const std::vector<RigSeries>& records) {
   return out;
 }
 
+bool is_smooth(const RigColumn& column, const RigScale& scale) noexcept {
+  return column.kind == Kind::kSign && column.a > (1.0 + 1e-9) * kSharp * scale.sign_mps;
+}
+
 RigLibrary make_library(const Config& config, const RigScale& scale) {
   const RigTerms base = rig_terms(config.model);
   RigLibrary out;
@@ -135,8 +143,11 @@ RigLibrary make_library(const Config& config, const RigScale& scale) {
     if (a < kNoiseTimes * scale.noise_m && share < kFrictionOfScale.back()) continue;
     out.friction.push_back(out.add({Kind::kStop, a, 0.0}));
   }
-  for (const double times : {0.3, 1.0, 3.0})
+  for (const double times : {0.3, 1.0, kSharp})
     out.friction.push_back(out.add({Kind::kSign, times * scale.sign_mps, 0.0}));
+  const double beyond_mps = std::max(kSharp * scale.sign_mps, kNarrowest * scale.velocity_mps);
+  for (const double share : ratios(beyond_mps, kWidest * scale.velocity_mps, kFrictionWidthRatio))
+    out.friction.push_back(out.add({Kind::kSign, kFrictionWidthRatio * share, 0.0}));
   if (base.inertia) out.base.push_back(out.add({Kind::kInertia, 0.0, 0.0}));
   out.base_friction = base.coulomb != Branches::kNone;
   out.offset = out.add({Kind::kOne, 0.0, 0.0});

@@ -29,6 +29,12 @@ struct RigScale {
 };
 [[nodiscard]] RigScale scale_of(const std::vector<RigSeries>& records);
 
+/// From one width of a smooth law of friction to the next.
+inline constexpr double kFrictionWidthRatio = 1.2;
+
+/// A law of friction wider than an error of the velocity makes it.
+[[nodiscard]] bool is_smooth(const RigColumn& column, const RigScale& scale) noexcept;
+
 /// Columns of every candidate and of the base model.
 struct RigLibrary {
   std::vector<RigColumn> columns;

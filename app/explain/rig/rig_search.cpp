@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/explain/rig/rig_search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kNeeded = 0.01;  // loss without it that keeps an effect
 constexpr std::size_t kMostSteps = 4;
+constexpr int kWidthRounds = 3;
+constexpr double kDominant = 0.5;  // of the base's error, that a spring takes
 
 }  // namespace
 
@@ -97,6 +101,35 @@ void RigSearch::try_linear(bool& added) {
   added = judge(chosen_columns()).fit.held_out_nmse < (1.0 - kNeeded) * without;
 }
 
+/// A spring that carries most of the force is no effect that a damper lacks: effects are looked for
+/// beside it.
+void RigSearch::take_dominant_spring(std::vector<std::string>& notes) {
+  const Judged without = judge({});
+  const Judged with = judge({library_.spring});
+  if (!with.fit.ok || with.fit.held_out_nmse > kDominant * without.fit.held_out_nmse) return;
+  spring_added_ = true;
+  notes.push_back(
+      fmt::format("A linear spring, which the base model does not have, was added first: held-out "
+                  "rrse {:.3f} -> {:.3f}. To have it in the base: [model] stiffness = \"identify\"",
+                  std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
+}
+
+/// A smooth law of friction between two widths of the grid would leave what looks like an effect.
+void RigSearch::refine_width() {
+  double ratio = kFrictionWidthRatio;
+  for (int round = 0; round < kWidthRounds; ++round) {
+    if (!library_.base_friction || !base_friction_left_) return;
+    const Judged now = judge(joined(chosen_columns(), {library_.spring, library_.offset}));
+    if (!now.fit.ok) return;
+    const RigColumn best = library_.columns[static_cast<std::size_t>(library_.friction[now.width])];
+    if (!is_smooth(best, scale_)) return;
+    ratio = std::sqrt(ratio);
+    for (const double a : {best.a / ratio, best.a * ratio})
+      library_.friction.push_back(library_.add({RigColumn::Kind::kSign, a, 0.0}));
+    evidence_ = std::make_unique<RigEvidence>(library_.columns, records_);
+  }
+}
+
 void RigSearch::backward() {
   for (std::size_t i = 0; chosen_.size() > 1 && i < chosen_.size();) {
     const double with = judge(chosen_columns()).fit.held_out_nmse;
@@ -122,10 +155,12 @@ RigExplanation RigSearch::run() {
   out.whole_records = evidence_->folds() == records_.size();
   if (filtered()) out.filter_hz = records_.front().config.corner_hz;
   describe(out.base, judge({}), {});
+  if (!library_.base_spring) take_dominant_spring(out.notes);
   if (library_.wants_impacts) leave_impacts_out();
-  while (chosen_.size() < kMostSteps && forward()) {
-  }
+  do refine_width();
+  while (chosen_.size() < kMostSteps && forward());
   backward();
+  spring_added_ = false;
   if (!library_.base_spring) try_linear(spring_added_);
   const Judged now = judge(chosen_columns());
   describe_steps(now);

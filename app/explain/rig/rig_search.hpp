@@ -67,7 +67,9 @@ class RigSearch {
   void rename_memory(Chosen& memory) const;
   void backward();
   void refine(Chosen& memory);
+  void take_dominant_spring(std::vector<std::string>& notes);
   void try_linear(bool& added);
+  void refine_width();
   [[nodiscard]] bool filtered() const;
   void describe(RigModel& model, const Judged& judged, const ColumnSet& more) const;
   void describe_bank(Chosen& chosen, const Judged& now) const;
