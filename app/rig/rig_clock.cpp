@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::size_t kFirstRows = 2000;
 constexpr std::size_t kFewestRows = 100;
-constexpr double kIrregularSamples = 0.33;
-constexpr double kIrregularShare = 0.01;
 constexpr double kLongestGapSamples = 1e12;
 
 }  // namespace

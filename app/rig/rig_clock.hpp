@@ -10,10 +10,13 @@ namespace dampline::app {
 
 /// Sample numbers from a record's own time column. Throws RunError naming record, line, what was
 /// found and what was expected: time that does not advance, or a record whose time is not uniform
-/// (more than one interval in a hundred off by a third of a sample or more; gaps of whole samples
-/// are gaps, not irregular).
+/// (more than kIrregularShare of the intervals off by more than kIrregularSamples; gaps of whole
+/// samples are gaps, not irregular).
 class RigClock {
  public:
+  static constexpr double kIrregularSamples = 0.33;
+  static constexpr double kIrregularShare = 0.01;
+
   RigClock(std::string record, double interval_s)
       : record_{std::move(record)}, interval_s_{interval_s} {}
 

@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/rig/rig_clock.hpp"
 
 namespace dampline::app {
 namespace {
 
-constexpr double kIrregularSamples = 0.33;  // as RigClock judges
-constexpr double kIrregularShare = 0.01;
 constexpr double kGapIntervals = 5.0;
 constexpr std::size_t kFewestRows = 100;
 
@@ -70,11 +69,11 @@ Times times_of(const Lines& lines) {
         (lines.back().time_s - lines.front().time_s) / static_cast<double>(lines.size() - 1);
   const auto irregular = std::count_if(steps.begin(), steps.end(), [&](double step) {
     const double samples = step / out.median_s;
-    return std::abs(samples - std::max(1.0, std::round(samples))) > kIrregularSamples;
+    return std::abs(samples - std::max(1.0, std::round(samples))) > RigClock::kIrregularSamples;
   });
   out.irregular_share = static_cast<double>(irregular) / static_cast<double>(steps.size());
   const auto uneven = std::count_if(steps.begin(), steps.end(), [&](double step) {
-    return std::abs(step / out.median_s - 1.0) > kIrregularSamples;
+    return std::abs(step / out.median_s - 1.0) > RigClock::kIrregularSamples;
   });
   out.uneven_share = static_cast<double>(uneven) / static_cast<double>(steps.size());
   out.judged = true;
@@ -156,10 +155,10 @@ RigRecord uniform_record(RigRecord record) {
   auto lines = std::make_shared<Lines>();
   for (RigLine line; source->next(line);) lines->push_back(line);
   const Times times = times_of(*lines);
-  if (!times.judged || times.uneven_share <= kIrregularShare) return record;
+  if (!times.judged || times.uneven_share <= RigClock::kIrregularShare) return record;
   if (straighten(*lines, times)) {
     record.notes.emplace_back("The times are rounded: they were put onto a straight line.");
-  } else if (times.irregular_share <= kIrregularShare) {
+  } else if (times.irregular_share <= RigClock::kIrregularShare) {
     return record;  // with gaps of whole samples
   } else {
     check_advance(record.name, *lines);

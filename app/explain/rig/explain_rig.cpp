@@ -119,7 +119,9 @@ RigExplanation explain_rig(const Config& config, const RigExplainOptions& option
       throw RunError{fmt::format("{}: found {} usable samples, expected at least 500", path,
                                  records.back().size())};
   }
-  for (const RigSeries& record : records) check_rates(record);
+  std::vector<RigGains> gains;
+  gains.reserve(records.size());
+  for (const RigSeries& record : records) gains.push_back(checked_gains(record));
   RigSearch search{config, records};
   RigExplanation out = search.run();
   for (const RigSeries& record : records)
@@ -127,7 +129,7 @@ RigExplanation explain_rig(const Config& config, const RigExplainOptions& option
       out.notes.push_back(records.size() > 1 ? fmt::format("{}: {}", record.record, note) : note);
   if (!out.base.fit.ok)
     throw RunError{fmt::format("{}: too little motion to determine the model", records[0].record)};
-  judge_gains(records, out);
+  judge_gains(gains, out);
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(
         out, read_rig_series(path, config, options.skip_bad_lines, options.reference_column)));

@@ -132,12 +132,10 @@ void RigSearch::describe_bank(Chosen& chosen, const Judged& now) const {
   for (const Eigen::VectorXd& theta : now.fit.left_out)
     left.push_back(read_bank(columns, theta, longest_m));
   const auto add = [&](const std::string& name, double Read::*value, const char* unit) {
-    double mean = 0.0;
-    double squares = 0.0;
-    const auto n = static_cast<double>(left.size());
-    for (const Read& r : left) mean += r.*value / n;
-    for (const Read& r : left) squares += (r.*value - mean) * (r.*value - mean);
-    chosen.step.parameters.push_back({name, all.*value, std::sqrt((n - 1.0) / n * squares), unit});
+    std::vector<double> values;
+    values.reserve(left.size());
+    for (const Read& r : left) values.push_back(r.*value);
+    chosen.step.parameters.push_back({name, all.*value, jackknife_std(values), unit});
   };
   const std::string& effect = chosen.step.effect;
   add(effect + "_force_positive", &Read::level_up_n, "N");

@@ -51,6 +51,15 @@ double block_t(const RigFit& before, const RigFit& after) {
   return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
 }
 
+double jackknife_std(const std::vector<double>& left_out) {
+  const auto n = static_cast<double>(left_out.size());
+  double mean = 0.0;
+  double squares = 0.0;
+  for (const double x : left_out) mean += x / n;
+  for (const double x : left_out) squares += (x - mean) * (x - mean);
+  return std::sqrt((n - 1.0) / n * squares);
+}
+
 /// Every effect in its best form beside a constant and a spring, the one that helps most first; of
 /// those that explain alike the plainest.
 std::vector<RigSearch::Ranked> RigSearch::rank() const {

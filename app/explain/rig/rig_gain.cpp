@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/explain/rig/rig_rank.hpp"
 
 namespace dampline::app {
 namespace {
@@ -32,6 +33,9 @@ struct Sums {
     xx += a * a;
     xy += a * b;
     yy += b * b;
+  }
+  [[nodiscard]] Sums with(const Sums& o) const {
+    return {n + o.n, x + o.x, y + o.y, xx + o.xx, xy + o.xy, yy + o.yy};
   }
   [[nodiscard]] Sums without(const Sums& o) const {
     return {n - o.n, x - o.x, y - o.y, xx - o.xx, xy - o.xy, yy - o.yy};
@@ -82,7 +86,7 @@ double accel_integral(const RigSeries& s, Eigen::Index at, Eigen::Index half) {
 
 RigGain line_through(const std::vector<Sums>& blocks, double noise) {
   Sums all;
-  for (const Sums& b : blocks) all = all.without({-b.n, -b.x, -b.y, -b.xx, -b.xy, -b.yy});
+  for (const Sums& b : blocks) all = all.with(b);
   RigGain out;
   if (all.n < static_cast<double>(kFewest) || !(all.variance_x() > 2.0 * all.n * noise) ||
       !(all.variance_y() > 0.0))
@@ -99,12 +103,7 @@ RigGain line_through(const std::vector<Sums>& blocks, double noise) {
   std::vector<double> gains;
   for (const Sums& b : blocks)
     if (b.n > 0.0) gains.push_back(all.without(b).gain(noise));
-  double mean = 0.0;
-  double squares = 0.0;
-  const auto n = static_cast<double>(gains.size());
-  for (const double g : gains) mean += g / n;
-  for (const double g : gains) squares += (g - mean) * (g - mean);
-  out.std = std::sqrt((n - 1.0) / n * squares);
+  out.std = jackknife_std(gains);
   return out;
 }
 
@@ -155,8 +154,6 @@ void judge(const RigGain& gain, const std::string& record, const char* column,
                   record, column, gain.gain, gain.std));
 }
 
-}  // namespace
-
 RigGain velocity_gain(const RigSeries& series) {
   if (!series.config.velocity_measured || series.size() < kFewest) return {};
   const Eigen::Index half = stretch_of(series);
@@ -187,19 +184,21 @@ RigGain accel_gain(const RigSeries& series) {
   return line_through(blocks, 6.0 * series.noise_m * series.noise_m);
 }
 
-void check_rates(const RigSeries& series) {
-  check_rate(series, velocity_gain(series), "velocity_mps", "rate");
-  check_rate(series, accel_gain(series), "accel_mps2", "second derivative");
+}  // namespace
+
+RigGains checked_gains(const RigSeries& series) {
+  const RigGains out{velocity_gain(series), accel_gain(series)};
+  check_rate(series, out.velocity, "velocity_mps", "rate");
+  check_rate(series, out.accel, "accel_mps2", "second derivative");
+  return out;
 }
 
-void judge_gains(const std::vector<RigSeries>& records, RigExplanation& out) {
+void judge_gains(const std::vector<RigGains>& gains, RigExplanation& out) {
   bool seen = false;
-  for (const RigSeries& series : records) {
-    const RigGain velocity = velocity_gain(series);
-    const RigGain accel = accel_gain(series);
-    seen = seen || velocity.known || accel.known;
-    judge(velocity, series.record, "velocity_mps", out);
-    judge(accel, series.record, "accel_mps2", out);
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    seen = seen || gains[i].velocity.known || gains[i].accel.known;
+    judge(gains[i].velocity, out.records[i], "velocity_mps", out);
+    judge(gains[i].accel, out.records[i], "accel_mps2", out);
   }
   if (!seen)
     out.notes.emplace_back(

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <vector>
+
 #include "app/explain/rig/rig_explanation.hpp"
 
 namespace dampline::app {
@@ -17,13 +19,16 @@ struct RigGain {
   double nmse_before{0.0};  ///< of the integral, with a gain of 1
   double nmse_after{0.0};
 };
-[[nodiscard]] RigGain velocity_gain(const RigSeries& series);
-[[nodiscard]] RigGain accel_gain(const RigSeries& series);
+struct RigGains {
+  RigGain velocity;
+  RigGain accel;
+};
 
 /// Throws RunError where the rate that was measured cannot be that of the deflection: another unit,
 /// another sign, or no relation at all.
-void check_rates(const RigSeries& series);
-/// gain_error as a step where either gain is not 1; a note where none can be seen.
-void judge_gains(const std::vector<RigSeries>& records, RigExplanation& out);
+[[nodiscard]] RigGains checked_gains(const RigSeries& series);
+/// gain_error as a step where either gain of a record is not 1; a note where none can be seen.
+/// `gains` in the order of `out.records`.
+void judge_gains(const std::vector<RigGains>& gains, RigExplanation& out);
 
 }  // namespace dampline::app

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "app/explain/rig/rig_evidence.hpp"
 
@@ -10,6 +11,9 @@ namespace dampline::app {
 /// How sure it is that `after` predicts better: mean over deviation of the mean of the blocks'
 /// improvements.
 [[nodiscard]] double block_t(const RigFit& before, const RigFit& after);
+
+/// Standard deviation of a figure, from what it is with each part of the data left out in turn.
+[[nodiscard]] double jackknife_std(const std::vector<double>& left_out);
 
 [[nodiscard]] inline ColumnSet joined(ColumnSet a, const ColumnSet& b) {
   for (const Eigen::Index i : b)
