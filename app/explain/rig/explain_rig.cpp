@@ -81,8 +81,9 @@ void compare_reference(const RigSeries& series, const RigRows& rows, const Eigen
 RigValidated validate(const RigExplanation& explanation, RigSeries series) {
   RigValidated out;
   out.record = series.record;
-  out.start_m = start_of(explanation.final, series);
   const RigRows base = rows_of(explanation.base.columns, series, 1);
+  series = seen_by(explanation.final, series);
+  out.start_m = start_of(explanation.final, series);
   series.start_m = out.start_m;
   const RigRows final = rows_of(explanation.final.columns, series, 1);
   if (final.values.rows() < 2)

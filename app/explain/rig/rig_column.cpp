@@ -20,6 +20,12 @@ double hat(double u, double node) {
   return std::max(0.0, 1.0 - std::abs(u - centre) / width);
 }
 
+/// tanh, which is slow and mostly 1.
+double softened_sign(double u) {
+  constexpr double kOne = 19.1;  // beyond it tanh is 1 in double precision
+  return std::abs(u) > kOne ? std::copysign(1.0, u) : std::tanh(u);
+}
+
 bool has_memory(Kind kind) { return kind >= Kind::kStop; }
 
 double static_value(const RigColumn& c, double x, double v) {
@@ -44,17 +50,17 @@ double static_value(const RigColumn& c, double x, double v) {
     case Kind::kSpeedSquared:
       return v * std::abs(v);
     case Kind::kSign:
-      return std::tanh(v / c.a);
+      return softened_sign(v / c.a);
     case Kind::kFading:
-      return std::tanh(v / c.a) * std::exp(-std::abs(v) / c.b);
+      return softened_sign(v / c.a) * std::exp(-std::abs(v) / c.b);
     case Kind::kFadingSquare:
-      return std::tanh(v / c.a) * std::exp(-v * v / (c.b * c.b));
+      return softened_sign(v / c.a) * std::exp(-v * v / (c.b * c.b));
     case Kind::kFadingSlowly:
-      return std::tanh(v / c.a) / (1.0 + v * v / (c.b * c.b));
+      return softened_sign(v / c.a) / (1.0 + v * v / (c.b * c.b));
     case Kind::kProgressive:
-      return std::tanh(v / c.a) * x;
+      return softened_sign(v / c.a) * x;
     case Kind::kProgressiveAbsolute:
-      return std::tanh(v / c.a) * std::abs(x);
+      return softened_sign(v / c.a) * std::abs(x);
     default:
       return 1.0;
   }
@@ -81,6 +87,9 @@ double memory_value(const RigColumn& c, double u, double v, double slip_m) {
 
 Eigen::VectorXd steady(const RigColumn& column, const RigSeries& series) {
   const Eigen::Index count = series.size();
+  if (column.kind == Kind::kAttached)
+    return attached_accel(series.deflection_m, series.velocity_mps, {column.a, column.b},
+                          series.interval_s);
   Eigen::VectorXd out{count};
   double z_m = std::clamp(series.start_m, -column.a, column.a);
   double slip_m = 0.0;
@@ -106,17 +115,21 @@ Eigen::VectorXd steady(const RigColumn& column, const RigSeries& series) {
   return out;
 }
 
+void change_over_time(const RigColumn& column, Eigen::VectorXd& values) {
+  const bool slope = column.time == RigColumn::Time::kSlope;
+  const double whole = static_cast<double>(std::max<Eigen::Index>(values.size() - 1, 1));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double share = static_cast<double>(i) / whole;
+    values[i] *= slope ? share - 0.5 : static_cast<double>(share > column.at);
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series) {
   Eigen::VectorXd out = steady(column, series);
-  if (column.time == RigColumn::Time::kSteady) return out;
-  const bool slope = column.time == RigColumn::Time::kSlope;
-  const double whole = static_cast<double>(std::max<Eigen::Index>(series.size() - 1, 1));
-  for (Eigen::Index i = 0; i < series.size(); ++i) {
-    const double share = static_cast<double>(i) / whole;
-    out[i] *= slope ? share - 0.5 : static_cast<double>(share > column.at);
-  }
+  if (column.time != RigColumn::Time::kSteady) change_over_time(column, out);
+  if (series.path.hz > 0.0) out = through_mode(out, series.path, series.interval_s);
   return out;
 }
 

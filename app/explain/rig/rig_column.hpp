@@ -30,6 +30,7 @@ struct RigColumn {
     kFadingSlowly,         ///< tanh(v / a) / (1 + (v / b)^2)
     kProgressive,          ///< tanh(v / a) x
     kProgressiveAbsolute,  ///< tanh(v / a) |x|
+    kAttached,             ///< acceleration of a mass on a spring: a Hz, damping ratio b
     kStop,                 ///< u of travel a
     kGapUp,                ///< max(u, 0)^4 of travel a: no force about the middle
     kGapDown,              ///< -max(-u, 0)^4
@@ -49,7 +50,8 @@ struct RigColumn {
   double at{0.0};
 };
 
-/// A column at every sample of a record; kInertia gives x, which only filtered_rows differentiates.
+/// A column at every sample of a record, behind the path that its force passes; kInertia gives x,
+/// which only rows_of differentiates.
 [[nodiscard]] Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series);
 
 /// Equations: one per row, a column per regressor and the force as the last. Without kInertia every

@@ -67,6 +67,8 @@ void RigSearch::describe_small(Chosen& c, const Estimate& first) const {
     const double travel_m = 2.0 * c.candidate.place;
     out.push_back({effect + "_force", first.value, first.std, "N"});
     out.push_back({effect + "_travel", travel_m, kMemoryPlace * travel_m, "m"});
+  } else if (effect == "unmodelled_mode") {
+    out.push_back({"unmodelled_mode_mass", first.value, first.std, "kg"});
   } else if (effect == "progressive_friction") {
     out.push_back({"progressive_friction_slope", first.value, first.std, "N/m"});
   } else {
@@ -125,7 +127,9 @@ void RigSearch::describe_drift(Chosen& c, const Judged& now, const ColumnSet& se
 void RigSearch::describe_steps(const Judged& now) {
   const ColumnSet set = set_of(chosen_columns(), now.width);
   for (Chosen& c : chosen_) {
-    if (c.step.effect == "time_skew" || c.step.effect == "impulsive_input") continue;
+    if (c.step.effect == "time_skew" || c.step.effect == "impulsive_input" ||
+        c.candidate.columns.empty())
+      continue;
     if (c.step.effect == "time_drift") {
       describe_drift(c, now, set);
       continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/explain/evidence_meter.hpp"
+#include "app/explain/rig/rig_trials.hpp"
 
 namespace dampline::app {
 namespace {
@@ -47,7 +48,7 @@ EvidenceScale scale_of_points(const std::vector<RigSeries>& records, Eigen::Inde
 void take_record(const RigExplanation& e, const RigSeries& series, double start_s,
                  Eigen::Index joined, EvidenceMeter& meter) {
   const RigRows base = rows_of(e.base.columns, series, 1);
-  const RigRows final = rows_of(e.final.columns, series, 1);
+  const RigRows final = rows_of(e.final.columns, seen_by(e.final, series), 1);
   const Eigen::VectorXd measured = final.values.rightCols<1>();
   const Eigen::VectorXd before = model_force(e.base, base);
   const Eigen::VectorXd after = model_force(e.final, final);
@@ -85,6 +86,12 @@ double sliding_force(const RigModel& model, double v) {
 
 Eigen::VectorXd model_force(const RigModel& model, const RigRows& rows) {
   return rows.values.leftCols(model.fit.theta.size()) * model.fit.theta;
+}
+
+RigSeries seen_by(const RigModel& model, const RigSeries& series) {
+  RigSeries out = model.skew_s != 0.0 ? delayed(series, model.skew_s) : series;
+  out.path = model.path;
+  return out;
 }
 
 void gather_evidence(const std::vector<RigSeries>& records, RigExplanation& e) {

@@ -29,6 +29,8 @@ struct RigModel {
   std::vector<RigColumn> columns;
   RigFit fit;
   std::vector<Parameter> parameters;
+  double skew_s{0.0};             ///< the force is late by this
+  RigMode path;                   ///< that the force passes before it is measured
   double floor_nmse{0.0};         ///< what the law leaves of its own twin; 0: not known
   double floor_noise_share{0.0};  ///< of it, what the noise of the force makes
   /// What is left, over that.

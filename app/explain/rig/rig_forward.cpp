@@ -208,19 +208,23 @@ bool RigSearch::forward() {
   for (std::size_t i = 0; i < order.size() && i <= kRunnersUp; ++i)
     rejected_.push_back(
         {order[i].candidate->effect, order[i].fit.held_out_nmse, order[i].gain, order[i].t});
-  const std::optional<RigTrial> trial = best_trial();
+  const double beside_both = top.fit.held_out_nmse / (1.0 - top.gain);
+  const std::optional<RigTrial> trial = best_trial(beside_both);
+  if (take_mass(order, trial)) return true;
   if (trial && is_better(*trial, order)) {
-    const Ranked as_ranked{&library_.candidates.front(), trial->gain, trial->t, trial->fit,
+    const RigCandidate no_column;
+    const Ranked as_ranked{&no_column, trial->gain, trial->t, trial->fit,
                            std::abs(trial->skew_s) < kShortSkew * records_.front().interval_s};
     if (passes(as_ranked, trial->fit.held_out_nmse / (1.0 - trial->gain))) {
       take(*trial, before.fit.held_out_nmse);
       return true;
     }
   }
-  if (!passes(top, top.fit.held_out_nmse / (1.0 - top.gain))) return false;
+  if (!passes(top, beside_both)) return false;
   alike_ = alike(order);
   if (!alike_.empty()) return false;
-  Chosen chosen{*top.candidate, {}, 0.0};
+  Chosen chosen;
+  chosen.candidate = *top.candidate;
   chosen.step.effect = top.candidate->effect;
   chosen.step.held_out_before = before.fit.held_out_nmse;
   chosen.step.gain = top.gain;

@@ -168,6 +168,7 @@ RigLibrary make_library(const Config& config, const RigScale& scale) {
   };
   out.wants_skew = is_wanted("time_skew");
   out.wants_drift = is_wanted("time_drift");
+  out.wants_mode = is_wanted("unmodelled_mode");
   out.wants_impacts = is_wanted("impulsive_input");
   if (!out.base_friction) {
     for (const Eigen::Index sign : out.friction)

@@ -50,6 +50,7 @@ struct RigLibrary {
   bool wants_skew{false};
   bool wants_drift{false};
   bool wants_impacts{false};
+  bool wants_mode{false};
   std::vector<RigCandidate> candidates;
 
   Eigen::Index add(const RigColumn& column);

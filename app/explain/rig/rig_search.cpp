@@ -103,12 +103,12 @@ void RigSearch::try_linear(bool& added) {
 
 /// A spring that carries most of the force is no effect that a damper lacks: effects are looked for
 /// beside it.
-void RigSearch::take_dominant_spring(std::vector<std::string>& notes) {
+void RigSearch::take_dominant_spring() {
   const Judged without = judge({});
   const Judged with = judge({library_.spring});
   if (!with.fit.ok || with.fit.held_out_nmse > kDominant * without.fit.held_out_nmse) return;
   spring_added_ = true;
-  notes.push_back(
+  notes_.push_back(
       fmt::format("A linear spring, which the base model does not have, was added first: held-out "
                   "rrse {:.3f} -> {:.3f}. To have it in the base: [model] stiffness = \"identify\"",
                   std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
@@ -155,18 +155,25 @@ RigExplanation RigSearch::run() {
   out.whole_records = evidence_->folds() == records_.size();
   if (filtered()) out.filter_hz = records_.front().config.corner_hz;
   describe(out.base, judge({}), {});
-  if (!library_.base_spring) take_dominant_spring(out.notes);
+  if (!library_.base_spring) take_dominant_spring();
   if (library_.wants_impacts) leave_impacts_out();
   do refine_width();
   while (chosen_.size() < kMostSteps && forward());
   backward();
   spring_added_ = false;
   if (!library_.base_spring) try_linear(spring_added_);
+  mass_added_ = false;
+  if (!filtered()) try_linear(mass_added_);
   const Judged now = judge(chosen_columns());
   describe_steps(now);
   out.rejected = rejected_;
   out.alike = alike_;
   describe(out.final, now, chosen_columns());
+  for (const Chosen& c : chosen_) {
+    out.final.skew_s += c.skew_s;
+    if (c.path.hz > 0.0) out.final.path = c.path;
+  }
+  out.notes = notes_;
   const RigFloor floor = floor_of(chosen_columns());
   out.final.floor_nmse = floor.nmse;
   out.final.floor_noise_share = floor.noise_share;

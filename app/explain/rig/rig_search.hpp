@@ -27,6 +27,7 @@ class RigSearch {
     double ridge{0.0};
     double other_memory{0.0};
     double skew_s{0.0};  ///< of time_skew, which has no columns
+    RigMode path;        ///< of unmodelled_mode where it has no columns
   };
   struct Judged {
     RigFit fit;
@@ -57,9 +58,12 @@ class RigSearch {
   void prefer_to_offset(std::vector<Ranked>& order) const;
   [[nodiscard]] std::string alike(const std::vector<Ranked>& order) const;
   [[nodiscard]] RigTrialBase trial_base() const;
-  [[nodiscard]] std::optional<RigTrial> best_trial() const;
+  [[nodiscard]] std::optional<RigTrial> best_trial(double before_nmse) const;
+  void prefer_mode(std::optional<RigTrial>& best) const;
+  bool take_mass(const std::vector<Ranked>& order, const std::optional<RigTrial>& trial);
   [[nodiscard]] bool is_better(const RigTrial& trial, const std::vector<Ranked>& order) const;
   void take(const RigTrial& trial, double before);
+  void take_mode(const RigTrial& trial, Chosen& chosen);
   void describe_drift(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
   void leave_impacts_out();
   bool forward();
@@ -67,7 +71,7 @@ class RigSearch {
   void rename_memory(Chosen& memory) const;
   void backward();
   void refine(Chosen& memory);
-  void take_dominant_spring(std::vector<std::string>& notes);
+  void take_dominant_spring();
   void try_linear(bool& added);
   void refine_width();
   [[nodiscard]] bool filtered() const;
@@ -86,6 +90,7 @@ class RigSearch {
   bool base_friction_left_{true};  ///< the base's friction stays beside the bank
   bool spring_added_{false};
   bool mass_added_{false};
+  std::vector<std::string> notes_;
   std::vector<JudgedCandidate> rejected_;  ///< of the newest round
   std::string alike_;                      ///< effects that the newest round could not tell apart
 };

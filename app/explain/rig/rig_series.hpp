@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "app/explain/rig/rig_mode.hpp"
 #include "dampline/rig/rig_config.hpp"
 
 namespace dampline::app {
@@ -25,6 +26,7 @@ struct RigSeries {
   Eigen::VectorXd accel_mps2;   ///< measured beside the deflection; empty: it is not
   Eigen::VectorXd left_out;     ///< 1: takes no part in a fit or its error; empty: none
   double noise_m{0.0};          ///< of the deflection, rms
+  RigMode path;                 ///< that a force passes before it is measured
   double start_m{0.0};          ///< slip of all friction elements at the first sample
 
   [[nodiscard]] Eigen::Index size() const { return force_n.size(); }

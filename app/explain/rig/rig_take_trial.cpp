@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,6 +16,7 @@ constexpr double kLeastGain = 0.1;
 constexpr double kSignificant = 3.0;
 constexpr double kClearMemory = 0.2;
 constexpr double kBetter = 0.85;  // of what the best column leaves
+constexpr double kOverFloor = 1.1;
 constexpr double kResolved = 0.03;
 constexpr double kStepPlace = 0.029;  // of the record: a tenth, evenly spread
 
@@ -99,7 +102,18 @@ RigTrialBase RigSearch::trial_base() const {
   return out;
 }
 
-std::optional<RigTrial> RigSearch::best_trial() const {
+/// Clearly better than what is simpler.
+void RigSearch::prefer_mode(std::optional<RigTrial>& best) const {
+  const RigTrialBase base = trial_base();
+  for (const auto& mode : {try_attached(records_, base), try_path(records_, base)}) {
+    if (!mode) continue;
+    const bool better = !best || (mode->fit.held_out_nmse < kBetter * best->fit.held_out_nmse &&
+                                  block_t(best->fit, mode->fit) > kSignificant);
+    if (better) best = mode;
+  }
+}
+
+std::optional<RigTrial> RigSearch::best_trial(double before_nmse) const {
   const auto is_taken = [&](const char* effect) {
     return std::any_of(chosen_.begin(), chosen_.end(),
                        [&](const Chosen& c) { return c.step.effect == effect; });
@@ -111,6 +125,9 @@ std::optional<RigTrial> RigSearch::best_trial() const {
   std::optional<RigTrial> drift;
   if (library_.wants_drift && !is_taken("time_drift")) drift = try_drift(records_, base);
   if (drift && (!best || drift->gain > best->gain)) best = drift;
+  if (!library_.wants_mode || is_taken("unmodelled_mode")) return best;
+  const double floor = floor_of(joined(chosen_columns(), {library_.spring, library_.offset})).nmse;
+  if (before_nmse > kOverFloor * floor) prefer_mode(best);
   return best;
 }
 
@@ -120,6 +137,51 @@ bool RigSearch::is_better(const RigTrial& trial, const std::vector<Ranked>& orde
   const RigFit& other = order.front().fit;
   return trial.fit.held_out_nmse < kBetter * other.held_out_nmse &&
          block_t(other, trial.fit) > kSignificant;
+}
+
+/// An inertia force is no effect that a damper lacks: effects are looked for beside it. A late
+/// force is one of a negative mass, an early one may be meant by a positive one.
+bool RigSearch::take_mass(const std::vector<Ranked>& order, const std::optional<RigTrial>& trial) {
+  if (filtered() || mass_added_) return false;
+  const ColumnSet both = joined(chosen_columns(), {library_.spring, library_.offset});
+  const RigCandidate mass{"moving_mass", 0.0, {library_.mass}, 1};
+  const Judged without = judge(both);
+  const Judged with = judge(joined(both, mass.columns));
+  if (!without.fit.ok || !with.fit.ok) return false;
+  const ColumnSet set = set_of(joined(both, mass.columns), with.width);
+  const auto at = std::find(set.begin(), set.end(), library_.mass) - set.begin();
+  if (!(with.fit.theta[at] > 0.0)) return false;
+  RigTrial as_trial;
+  as_trial.fit = with.fit;
+  as_trial.gain = 1.0 - with.fit.held_out_nmse / without.fit.held_out_nmse;
+  as_trial.t = block_t(without.fit, with.fit);
+  if (!is_better(as_trial, order)) return false;
+  const auto clearly = [](const RigFit& better, const RigFit& worse) {
+    return better.held_out_nmse < kBetter * worse.held_out_nmse &&
+           block_t(worse, better) > kSignificant;
+  };
+  if (trial && trial->effect == "time_skew" && !clearly(with.fit, trial->fit)) return false;
+  if (trial && clearly(trial->fit, with.fit)) return false;
+  if (!passes({&mass, as_trial.gain, as_trial.t, with.fit, false}, without.fit.held_out_nmse))
+    return false;
+  mass_added_ = true;
+  notes_.push_back(fmt::format(
+      "An inertia force of {:.4g} kg, which the base model does not have, was added first: "
+      "held-out "
+      "rrse {:.3f} -> {:.3f}. A mass on a spring whose resonance lies far above the motion looks "
+      "the "
+      "same. To have it in the base: [model] inertia = \"identify\"",
+      with.fit.theta[at], std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
+  return true;
+}
+
+void RigSearch::take_mode(const RigTrial& trial, Chosen& chosen) {
+  const RigMode std = mode_deviation(records_, trial_base(), trial);
+  chosen.step.parameters = {{"unmodelled_mode_frequency", trial.mode.hz, std.hz, "Hz"},
+                            {"unmodelled_mode_damping", trial.mode.damping, std.damping, ""}};
+  if (!trial.columns.empty()) return;
+  chosen.path = trial.mode;
+  for (RigSeries& record : records_) record.path = trial.mode;
 }
 
 void RigSearch::take(const RigTrial& trial, double before) {
@@ -138,6 +200,8 @@ void RigSearch::take(const RigTrial& trial, double before) {
                                       1e3 * skew_deviation(records_, trial_base(), trial.skew_s),
                                       "ms"});
     for (RigSeries& record : records_) record = delayed(record, trial.skew_s);
+  } else if (trial.effect == "unmodelled_mode") {
+    take_mode(trial, chosen);
   } else {
     chosen.step.parameters.push_back({"time_drift_" + trial.parameter, 0.0, 0.0, "%"});
     if (trial.at_share > 0.0) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "app/explain/rig/rig_rank.hpp"
 
@@ -13,33 +14,57 @@ namespace {
 
 constexpr std::array kSkewSamples{0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0};
 constexpr int kRefinements = 4;
+constexpr double kWorthALook = 0.95;
+constexpr std::size_t kLooks = 3;
 constexpr double kLeastSkew = 0.12;  // samples
-constexpr int kStepPlaces = 10;
+constexpr std::size_t kStepPlaces = 10;
 
-ColumnSet first_columns(std::size_t count) {
-  ColumnSet out(count);
-  std::iota(out.begin(), out.end(), 0);
+std::vector<RigColumn> all_columns(const RigTrialBase& base, std::vector<RigColumn> more) {
+  std::vector<RigColumn> out = base.columns;
+  out.insert(out.end(), base.friction.begin(), base.friction.end());
+  out.insert(out.end(), more.begin(), more.end());
   return out;
 }
 
 }  // namespace
 
-RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base,
-                const std::vector<RigColumn>& more) {
-  std::vector<RigColumn> columns = base.columns;
-  columns.insert(columns.end(), more.begin(), more.end());
-  const auto first = static_cast<Eigen::Index>(columns.size());
-  const ColumnSet others = first_columns(columns.size());
-  columns.insert(columns.end(), base.friction.begin(), base.friction.end());
-  const RigEvidence evidence{columns, records};
-  RigFit best;
-  for (std::size_t w = 0; w < std::max<std::size_t>(base.friction.size(), 1); ++w) {
-    ColumnSet set = others;
-    if (!base.friction.empty()) set.push_back(first + static_cast<Eigen::Index>(w));
-    RigFit fit = evidence.fit(set, base.ridge);
-    if (fit.ok && (!best.ok || fit.held_out_nmse < best.held_out_nmse)) best = std::move(fit);
+TrialFits::TrialFits(const std::vector<RigSeries>& records, const RigTrialBase& base,
+                     std::vector<RigColumn> more)
+    : base_{base}, evidence_{all_columns(base, std::move(more)), records} {}
+
+RigFit TrialFits::fit(const ColumnSet& more, std::size_t friction) const {
+  const std::size_t first = base_.columns.size();
+  ColumnSet set(first);
+  std::iota(set.begin(), set.end(), 0);
+  for (const Eigen::Index i : more)
+    set.push_back(static_cast<Eigen::Index>(first + base_.friction.size()) + i);
+  if (!base_.friction.empty()) set.push_back(static_cast<Eigen::Index>(first + friction));
+  return evidence_.fit(set, base_.ridge);
+}
+
+RigFit TrialFits::best(const ColumnSet& more) const {
+  RigFit out;
+  for (std::size_t w = 0; w < std::max<std::size_t>(base_.friction.size(), 1); ++w) {
+    RigFit now = fit(more, w);
+    if (now.ok && (!out.ok || now.held_out_nmse < out.held_out_nmse)) out = std::move(now);
   }
-  return best;
+  return out;
+}
+
+std::optional<RigColumn> TrialFits::friction() const {
+  std::optional<RigColumn> out;
+  double least = 0.0;
+  for (std::size_t w = 0; w < base_.friction.size(); ++w) {
+    const RigFit now = fit({}, w);
+    if (!now.ok || (out && now.held_out_nmse >= least)) continue;
+    least = now.held_out_nmse;
+    out = base_.friction[w];
+  }
+  return out;
+}
+
+RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base) {
+  return TrialFits{records, base}.best();
 }
 
 namespace {
@@ -91,15 +116,8 @@ std::vector<Drifting> what_may_drift(const std::vector<RigSeries>& records,
   std::vector<Drifting> out;
   for (const RigColumn& c : base.columns)
     if (drift_name(c) != nullptr) out.push_back({c, drift_name(c)});
-  RigColumn best;
-  double least = -1.0;
-  for (const RigColumn& friction : base.friction) {
-    const double nmse = best_fit(records, {base.columns, {friction}, base.ridge}).held_out_nmse;
-    if (least >= 0.0 && nmse >= least) continue;
-    least = nmse;
-    best = friction;
-  }
-  if (least >= 0.0) out.push_back({best, "coulomb"});
+  if (const auto friction = TrialFits{records, base}.friction())
+    out.push_back({*friction, "coulomb"});
   return out;
 }
 
@@ -124,15 +142,25 @@ std::optional<RigTrial> try_skew(const std::vector<RigSeries>& records, const Ri
   best.fit = without;
   const auto look = [&](double skew_s) {
     RigFit fit = skewed_fit(records, base, skew_s);
-    if (!fit.ok || fit.held_out_nmse >= best.fit.held_out_nmse) return;
+    const double nmse = fit.ok ? fit.held_out_nmse : without.held_out_nmse;
+    if (nmse >= best.fit.held_out_nmse) return nmse;
     best.fit = std::move(fit);
     best.skew_s = skew_s;
+    return nmse;
   };
-  for (const double samples : kSkewSamples) {
-    look(samples * interval_s);
-    look(-samples * interval_s);
-  }
-  double step_s = 0.25 * std::max(std::abs(best.skew_s), 0.25 * interval_s);
+  std::vector<std::pair<double, double>> order;  // error, skew
+  for (const double samples : kSkewSamples)
+    for (const double skew_s : {samples * interval_s, -samples * interval_s})
+      order.emplace_back(look(skew_s), skew_s);
+  std::sort(order.begin(), order.end());
+  // A sharp friction makes a narrow hollow, which the grid may pass by.
+  if (best.fit.held_out_nmse < kWorthALook * without.held_out_nmse)
+    for (std::size_t i = 0; i < kLooks; ++i)
+      for (const double part : {-0.25, -0.125, 0.125, 0.25}) {
+        const double step_s = part * std::max(std::abs(order[i].second), interval_s);
+        look(order[i].second + step_s);
+      }
+  double step_s = 0.0625 * std::max(std::abs(best.skew_s), interval_s);
   for (int i = 0; i < kRefinements; ++i, step_s *= 0.5) {
     const double middle_s = best.skew_s;
     look(middle_s - step_s);
@@ -151,8 +179,12 @@ double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase&
   const RigFit middle = skewed_fit(records, base, skew_s);
   const RigFit high = skewed_fit(records, base, skew_s + step_s);
   if (!low.ok || !middle.ok || !high.ok) return step_s;
+  return deviation_of(low, middle, high, step_s);
+}
+
+double deviation_of(const RigFit& low, const RigFit& middle, const RigFit& high, double step) {
   const double curve = high.held_out_nmse - 2.0 * middle.held_out_nmse + low.held_out_nmse;
-  if (!(curve > 0.0)) return step_s;
+  if (!(curve > 0.0)) return step;
   const auto n = static_cast<double>(middle.block_error.size());
   double squares = 0.0;
   const double mean = 0.5 * (high.held_out_nmse - low.held_out_nmse);
@@ -160,29 +192,32 @@ double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase&
     const double slope = 0.5 * (high.block_error[b] - low.block_error[b]) - mean;
     squares += slope * slope;
   }
-  return step_s * std::sqrt(squares / (n * (n - 1.0))) / curve;
+  return step * std::sqrt(squares / (n * (n - 1.0))) / curve;
 }
 
 std::optional<RigTrial> try_drift(const std::vector<RigSeries>& records, const RigTrialBase& base) {
-  std::vector<RigColumn> columns = base.columns;
-  columns.insert(columns.end(), base.friction.begin(), base.friction.end());
-  const RigFit without = best_fit(records, base);
+  const std::vector<Drifting> drifting = what_may_drift(records, base);
+  std::vector<RigColumn> columns;
+  for (const Drifting& d : drifting) {
+    for (std::size_t place = 0; place < kStepPlaces; ++place) {
+      columns.push_back(d.column);
+      columns.back().time = place == 0 ? RigColumn::Time::kSlope : RigColumn::Time::kStep;
+      columns.back().at = static_cast<double>(place) / kStepPlaces;
+    }
+  }
+  const TrialFits fits{records, base, columns};
+  const RigFit without = fits.best();
   if (!without.ok) return std::nullopt;
   RigTrial best;
   best.effect = "time_drift";
   best.fit = without;
-  for (const Drifting& drifting : what_may_drift(records, base)) {
-    for (int place = 0; place < kStepPlaces; ++place) {
-      RigColumn column = drifting.column;
-      column.time = place == 0 ? RigColumn::Time::kSlope : RigColumn::Time::kStep;
-      column.at = static_cast<double>(place) / kStepPlaces;
-      RigFit fit = best_fit(records, base, {column});
-      if (!fit.ok || fit.held_out_nmse >= best.fit.held_out_nmse) continue;
-      best.fit = std::move(fit);
-      best.columns = {column};
-      best.parameter = drifting.name;
-      best.at_share = place == 0 ? -1.0 : column.at;
-    }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    RigFit fit = fits.best({static_cast<Eigen::Index>(c)});
+    if (!fit.ok || fit.held_out_nmse >= best.fit.held_out_nmse) continue;
+    best.fit = std::move(fit);
+    best.columns = {columns[c]};
+    best.parameter = drifting[c / kStepPlaces].name;
+    best.at_share = columns[c].time == RigColumn::Time::kSlope ? -1.0 : columns[c].at;
   }
   if (best.columns.empty()) return std::nullopt;
   best.gain = 1.0 - best.fit.held_out_nmse / without.held_out_nmse;

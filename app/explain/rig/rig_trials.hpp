@@ -15,9 +15,26 @@ struct RigTrialBase {
   double ridge{0.0};
 };
 
-/// The best fit of all ways to write sign v, with `more` columns beside.
-[[nodiscard]] RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base,
-                              const std::vector<RigColumn>& more = {});
+/// Fits of one base with any of some more columns, of one pass over the records.
+class TrialFits {
+ public:
+  TrialFits(const std::vector<RigSeries>& records, const RigTrialBase& base,
+            std::vector<RigColumn> more = {});
+  /// The best fit of all ways to write sign v. `more`: numbers of the columns beside the base; they
+  /// follow the base's in theta.
+  [[nodiscard]] RigFit best(const ColumnSet& more = {}) const;
+  /// The way to write sign v that fits best; nothing where the base has none.
+  [[nodiscard]] std::optional<RigColumn> friction() const;
+
+ private:
+  [[nodiscard]] RigFit fit(const ColumnSet& more, std::size_t friction) const;
+
+  RigTrialBase base_;
+  RigEvidence evidence_;
+};
+
+/// The best fit of all ways to write sign v.
+[[nodiscard]] RigFit best_fit(const std::vector<RigSeries>& records, const RigTrialBase& base);
 
 /// An effect that is no column of the motion as it was measured: another instant, or a law that
 /// changes over the record.
@@ -29,6 +46,7 @@ struct RigTrial {
   std::vector<RigColumn> columns;  ///< that it adds
   double skew_s{0.0};              ///< the force is late by this
   std::string parameter;           ///< what drifts
+  RigMode mode;                    ///< unmodelled_mode; without columns the force passes it
   double at_share{-1.0};           ///< of the record, where it changes at once; -1: slowly
 };
 
@@ -41,6 +59,22 @@ struct RigTrial {
 /// Standard deviation of a skew, by the jackknife over the blocks.
 [[nodiscard]] double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase& base,
                                     double skew_s);
+/// Standard deviation of what one parameter is, from the fits a step below it, at it and above.
+[[nodiscard]] double deviation_of(const RigFit& low, const RigFit& middle, const RigFit& high,
+                                  double step);
+
+/// A mass on a spring that stands on what moves, its resonance as high as one that moves along
+/// still shows.
+[[nodiscard]] std::optional<RigTrial> try_attached(const std::vector<RigSeries>& records,
+                                                   const RigTrialBase& base);
+/// A mass on a spring between the damper and the force's sensor, which must resonate: what only
+/// lags is no mode.
+[[nodiscard]] std::optional<RigTrial> try_path(const std::vector<RigSeries>& records,
+                                               const RigTrialBase& base);
+/// Standard deviations of a mode's two parameters.
+[[nodiscard]] RigMode mode_deviation(const std::vector<RigSeries>& records,
+                                     const RigTrialBase& base, const RigTrial& trial);
+
 /// The friction, the viscous part or the spring changes over the record: evenly, or at once.
 [[nodiscard]] std::optional<RigTrial> try_drift(const std::vector<RigSeries>& records,
                                                 const RigTrialBase& base);

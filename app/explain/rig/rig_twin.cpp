@@ -69,10 +69,13 @@ Eigen::VectorXd force_of(const RigLaw& law, const RigSeries& motion) {
     RigColumn column = law.columns[c];
     if (column.kind == RigColumn::Kind::kInertia) column.kind = RigColumn::Kind::kAcceleration;
     const double theta = law.theta[static_cast<Eigen::Index>(c)];
-    if (is_sign(column, law))
-      out += theta * motion.velocity_mps.array().sign().matrix();
-    else
+    if (!is_sign(column, law)) {
       out += theta * evaluate(column, motion);
+      continue;
+    }
+    const Eigen::VectorXd sign = motion.velocity_mps.array().sign();
+    out +=
+        theta * (motion.path.hz > 0.0 ? through_mode(sign, motion.path, motion.interval_s) : sign);
   }
   return out;
 }
