@@ -178,6 +178,31 @@ TEST(RigMode, FarAboveTheMotionIsAMovingMass) {
   EXPECT_NE(to_json(found).find("An inertia force of"), std::string::npos);
 }
 
+TEST(RigNoise, NeedNotBeWhite) {
+  std::mt19937_64 random{71};
+  std::normal_distribution<double> normal;
+  double colored_n = 0.0;
+  const RigExplanation found = explained(
+      [&](double t, double h) {
+        // First order, 25 Hz, 40 N.
+        const double kept = std::exp(-2.0 * M_PI * 25.0 * h);
+        colored_n = kept * colored_n + 40.0 * std::sqrt(1.0 - kept * kept) * normal(random);
+        return simple(motion_at(t + h)) + colored_n;
+      },
+      71);
+  EXPECT_TRUE(found.steps.empty()) << summarize(found);
+  EXPECT_STREQ(found.verdict(), "complete") << summarize(found);
+}
+
+TEST(RigNoise, IsNotWhatRingsWhereNoModeIsLookedFor) {
+  const dampline::testing::TemporaryFile file{record_of(behind_fixture(23.0, 0.1), 73), ".csv"};
+  Config config;
+  config.model.base = {"coulomb", "viscous"};
+  config.model.candidates = {"offset_force"};
+  const RigExplanation found = explain_rig(config, {{file.path()}, {}, "", false});
+  EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
+}
+
 TEST(RigSkew, IsAppliedToWhatIsPredicted) {
   constexpr double kLateS = 0.0041;
   const RigExplanation found =

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "app/explain/rig/rig_noise.hpp"
 #include "app/explain/rig/rig_rank.hpp"
 
 namespace dampline::app {
@@ -14,6 +16,8 @@ namespace {
 constexpr double kNeeded = 0.01;  // loss without it that keeps an effect
 constexpr std::size_t kMostSteps = 4;
 constexpr int kWidthRounds = 3;
+constexpr double kRichRidge = 1e-2;
+constexpr double kUntouched = 0.95;
 constexpr double kDominant = 0.5;  // of the base's error, that a spring takes
 
 }  // namespace
@@ -149,6 +153,25 @@ void RigSearch::backward() {
   }
 }
 
+/// Noise of a force cell need not be white. What is Gaussian, as loud at any time and in any
+/// motion, and what all columns together cannot predict, no effect makes.
+void RigSearch::count_noise(RigExplanation& out) const {
+  if (filtered() || out.is_complete() || !alike_.empty()) return;
+  const RigLeft left = what_is_left(records_, out.final);
+  if (!left.is_like_noise() || left.nmse < out.final.floor_nmse) return;
+  ColumnSet all(library_.columns.size());
+  std::iota(all.begin(), all.end(), 0);
+  const RigFit rich = evidence_->fit(all, kRichRidge);
+  if (!rich.ok || rich.held_out_nmse < kUntouched * out.final.fit.held_out_nmse) return;
+  out.final.floor_nmse = left.nmse;
+  out.final.floor_noise_share = 1.0;
+  out.notes.push_back(fmt::format(
+      "What is left away from the reversals, {:.4g} N rms, is Gaussian, as loud at any time and "
+      "speed, and nothing that the motion predicts: it counts as noise of the force, though it is "
+      "not white.",
+      left.rms_n));
+}
+
 RigExplanation RigSearch::run() {
   RigExplanation out;
   for (const RigSeries& s : records_) out.records.push_back(s.record);
@@ -177,6 +200,7 @@ RigExplanation RigSearch::run() {
   const RigFloor floor = floor_of(chosen_columns());
   out.final.floor_nmse = floor.nmse;
   out.final.floor_noise_share = floor.noise_share;
+  count_noise(out);
   for (const Chosen& c : chosen_) {
     out.steps.push_back(c.step);
     for (const Parameter& p : c.step.parameters) out.final.parameters.push_back(p);

@@ -74,6 +74,7 @@ class RigSearch {
   void take_dominant_spring();
   void try_linear(bool& added);
   void refine_width();
+  void count_noise(RigExplanation& out) const;
   [[nodiscard]] bool filtered() const;
   void describe(RigModel& model, const Judged& judged, const ColumnSet& more) const;
   void describe_bank(Chosen& chosen, const Judged& now) const;
