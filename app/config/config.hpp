@@ -56,7 +56,8 @@ struct InputConfig {
 struct ModelConfig {
   std::vector<std::string> base{"coulomb"};    ///< effect names beside the linear spring
   std::vector<std::string> candidates{"all"};  ///< effect names, or "all"
-  std::string inertia{"none"};  ///< of a rig's force: "none", or "identify" for a driven mass
+  std::string inertia{
+      "auto"};  ///< of a rig's force: "identify", "none"; "auto": explain tells, else none
   /// Linear spring: "none", "identify", or "auto": identified for a truck, none in a rig's force.
   std::string stiffness{"auto"};
   std::optional<double> rig_corner_hz;  ///< of a rig's test function; absent: "auto", from the data

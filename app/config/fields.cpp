@@ -7,7 +7,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::array<std::string_view, 2> kInertiaWords{"none", "identify"};
+constexpr std::array<std::string_view, 3> kInertiaWords{"auto", "identify", "none"};
 constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "none"};
 constexpr std::array<std::string_view, 2> kMethodWords{"wavelet", "all"};
 constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
@@ -84,7 +84,8 @@ void add_model(ModelConfig& model, Fields& out) {
                  TextListField{&model.base, kAll.first(kEffects.size() - 1)}});
   out.push_back({"model", "candidates", "effects to try where the base fails",
                  TextListField{&model.candidates, kAll}});
-  out.push_back({"model", "inertia", "of a rig's force: none, or identify for a driven mass",
+  out.push_back({"model", "inertia",
+                 "of a rig's force: identify for a driven mass; auto: explain tells, else none",
                  TextField{&model.inertia, kInertiaWords}});
   out.push_back({"model", "stiffness", "linear spring; auto: identified for a truck, none on a rig",
                  TextField{&model.stiffness, kStiffnessWords}});

@@ -89,7 +89,7 @@ void RigJob::survey() {
         fmt::format("[model] rig_corner_hz: found {:g} Hz at a sample rate of {:.6g} Hz, expected "
                     "{:.3g} to {:.3g} Hz",
                     model_.rig_corner_hz.value_or(0.0), 1.0 / interval_s_, 1e-3 / interval_s_,
-                    1.0 / (12.0 * interval_s_)));
+                    1.0 / (6.5 * interval_s_)));
   findings_.config = suggested.value();
   findings_.config.sample_rate_hz = 1.0 / clock.mean_interval_s();
   if (model_.curve_nodes_mps.size() == kCurveSegments)

@@ -143,6 +143,30 @@ TEST(RigSurvey, MeasuresNoiseAndFrequencyOfAHarmonicMotion) {
   EXPECT_NEAR(survey.deflection_noise_m(), 5e-6, 0.3e-6);
 }
 
+TEST(RigSurvey, MeasuresAMotionOfAFewSamples) {
+  RigSurvey survey{1000.0, false};
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> noise{0.0, 1e-6};
+  for (std::int64_t tick = 0; tick < 20000; ++tick) {
+    RigSample sample;
+    sample.tick = tick;
+    sample.deflection_m = 1e-3 * std::sin(0.6 * static_cast<double>(tick)) + noise(random);
+    survey.update(sample);
+  }
+  EXPECT_NEAR(survey.motion_frequency_hz(), 95.49, 0.02 * 95.49);
+  EXPECT_NEAR(survey.deflection_noise_m(), 1e-6, 0.3e-6);
+  EXPECT_TRUE(survey.suggest({}).value().velocity_sharp);
+}
+
+TEST(DerivativeWindow, IsExactForSixthPowersWhereItIsSharp) {
+  const DerivativeWindow window = DerivativeWindow::sharp(0.1);
+  const auto power = [](double t) { return std::pow(t, 6) - 2.0 * std::pow(t, 5) + t; };
+  double rate = 0.0;
+  for (int j = 1; j <= window.half_width(); ++j)
+    rate += window.weight(j) * (power(1.0 + 0.1 * j) - power(1.0 - 0.1 * j));
+  EXPECT_NEAR(rate, 6.0 - 10.0 + 1.0, 1e-12);
+}
+
 TEST(RigSurvey, IsNotReadyWithoutMotion) {
   RigSurvey survey{1000.0, false};
   EXPECT_EQ(survey.suggest({}).error(), Errc::kNotReady);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "app/error.hpp"
+#include "app/explain/rig/driven_mass.hpp"
 #include "app/explain/rig/rig_evidence_points.hpp"
 #include "app/explain/rig/rig_gain.hpp"
 #include "app/explain/rig/rig_search.hpp"
@@ -106,25 +107,49 @@ RigValidated validate(const RigExplanation& explanation, RigSeries series) {
   return out;
 }
 
-}  // namespace
-
-RigExplanation explain_rig(const Config& config, const RigExplainOptions& options) {
-  std::vector<RigSeries> records;
+std::vector<RigSeries> read_records(const Config& config, const RigExplainOptions& options) {
+  std::vector<RigSeries> out;
   for (const std::string& path : options.records) {
-    records.push_back(read_rig_series(path, config, options.skip_bad_lines));
-    if (records.back().has_gap && config.model.inertia == "identify")
+    out.push_back(read_rig_series(path, config, options.skip_bad_lines));
+    if (out.back().has_gap && config.model.inertia == "identify")
       throw RunError{fmt::format(
           "{}: has gaps or values that are no number; expected none where the mass is identified",
           path)};
-    if (records.back().size() < 500)
+    if (out.back().size() < 500)
       throw RunError{fmt::format("{}: found {} usable samples, expected at least 500", path,
-                                 records.back().size())};
+                                 out.back().size())};
+  }
+  return out;
+}
+
+bool has_gaps(const std::vector<RigSeries>& records) {
+  return std::any_of(records.begin(), records.end(), [](const RigSeries& s) { return s.has_gap; });
+}
+
+}  // namespace
+
+RigExplanation explain_rig(const Config& given, const RigExplainOptions& options) {
+  Config config = given;
+  std::vector<RigSeries> records = read_records(config, options);
+  std::vector<std::string> notes;
+  if (config.model.inertia == "auto" && is_driven_mass(records)) {
+    const bool gaps = has_gaps(records);
+    notes.emplace_back(
+        gaps ? "An inertia carries much of the force, but the record has gaps: no mass was "
+               "identified, and what follows describes the force without it."
+             : "An inertia carries much of the force: the mass is identified too. To leave it out: "
+               "[model] inertia = \"none\"");
+    if (!gaps) {
+      config.model.inertia = "identify";
+      records = read_records(config, options);
+    }
   }
   std::vector<RigGains> gains;
   gains.reserve(records.size());
   for (const RigSeries& record : records) gains.push_back(checked_gains(record));
   RigSearch search{config, records};
   RigExplanation out = search.run();
+  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
   for (const RigSeries& record : records)
     for (const std::string& note : record.notes)
       out.notes.push_back(records.size() > 1 ? fmt::format("{}: {}", record.record, note) : note);

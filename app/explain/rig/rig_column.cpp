@@ -146,20 +146,27 @@ RigRows rows_of(const std::vector<RigColumn>& columns, const RigSeries& series,
   const auto count = static_cast<Eigen::Index>(columns.size());
   out.values.resize(rows, count + 1);
   Eigen::VectorXd psi{2 * reach + 1};
+  Eigen::VectorXd rate{2 * reach + 1};
   Eigen::VectorXd second{2 * reach + 1};
   for (Eigen::Index j = -reach; filtered && j <= reach; ++j) {
     const TestFunction::Values values = window.at(static_cast<int>(j));
     psi[reach + j] = values.psi;
+    rate[reach + j] = -values.first;
     second[reach + j] = values.second;
   }
   if (!filtered) psi[0] = 1.0;
   const double sum = psi.sum();
   psi /= sum;
+  rate /= sum;
   second /= sum;
+  const bool derived = filtered && !series.config.velocity_measured;
   for (Eigen::Index c = 0; c <= count; ++c) {
     const bool force = c == count;
-    const RigColumn column = force ? RigColumn{} : columns[static_cast<std::size_t>(c)];
-    const Eigen::VectorXd& weights = column.kind == Kind::kInertia ? second : psi;
+    RigColumn column = force ? RigColumn{} : columns[static_cast<std::size_t>(c)];
+    const bool rates = derived && !force && column.kind == Kind::kVelocity &&
+                       column.time == RigColumn::Time::kSteady;
+    if (rates) column.kind = Kind::kDeflection;
+    const Eigen::VectorXd& weights = rates ? rate : column.kind == Kind::kInertia ? second : psi;
     const Eigen::VectorXd values = force ? series.force_n : evaluate(column, series);
     for (Eigen::Index r = 0; r < rows; ++r) {
       const Eigen::Index centre = out.sample[static_cast<std::size_t>(r)];

@@ -233,7 +233,7 @@ bool RigSearch::forward() {
   rejected_.clear();
   chosen.other_memory = other_memory_of(order);
   chosen_.push_back(chosen);
-  if (!filtered()) try_linear(mass_added_);
+  if (!filtered()) try_mass();
   if (is_memory(chosen.step.effect)) refine(chosen_.back());
   chosen_.back().step.held_out_after = judge(chosen_columns()).fit.held_out_nmse;
   chosen_.back().step.terms = terms();

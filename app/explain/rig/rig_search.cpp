@@ -20,6 +20,13 @@ constexpr double kRichRidge = 1e-2;
 constexpr double kUntouched = 0.95;
 constexpr double kDominant = 0.5;  // of the base's error, that a spring takes
 
+/// A column's own name may be its effect's: an offset.
+void add_once(const Parameter& parameter, std::vector<Parameter>& out) {
+  const bool there = std::any_of(out.begin(), out.end(),
+                                 [&](const Parameter& p) { return p.name == parameter.name; });
+  if (!there) out.push_back(parameter);
+}
+
 }  // namespace
 
 RigSearch::RigSearch(const Config& config, const std::vector<RigSeries>& records)
@@ -105,6 +112,15 @@ void RigSearch::try_linear(bool& added) {
   added = judge(chosen_columns()).fit.held_out_nmse < (1.0 - kNeeded) * without;
 }
 
+/// Neither is less than nothing: a negative one would only help the fit.
+void RigSearch::try_mass() {
+  try_linear(mass_added_);
+  const Judged now = judge(chosen_columns());
+  const ColumnSet set = set_of(chosen_columns(), now.width);
+  const auto at = std::find(set.begin(), set.end(), library_.mass) - set.begin();
+  mass_added_ = mass_added_ && now.fit.theta[at] > 0.0;
+}
+
 /// A spring that carries most of the force is no effect that a damper lacks: effects are looked for
 /// beside it.
 void RigSearch::take_dominant_spring() {
@@ -186,7 +202,7 @@ RigExplanation RigSearch::run() {
   spring_added_ = false;
   if (!library_.base_spring) try_linear(spring_added_);
   mass_added_ = false;
-  if (!filtered()) try_linear(mass_added_);
+  if (!filtered()) try_mass();
   const Judged now = judge(chosen_columns());
   describe_steps(now);
   out.rejected = rejected_;
@@ -203,7 +219,7 @@ RigExplanation RigSearch::run() {
   count_noise(out);
   for (const Chosen& c : chosen_) {
     out.steps.push_back(c.step);
-    for (const Parameter& p : c.step.parameters) out.final.parameters.push_back(p);
+    for (const Parameter& p : c.step.parameters) add_once(p, out.final.parameters);
   }
   return out;
 }

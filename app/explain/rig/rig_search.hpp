@@ -73,6 +73,7 @@ class RigSearch {
   void refine(Chosen& memory);
   void take_dominant_spring();
   void try_linear(bool& added);
+  void try_mass();
   void refine_width();
   void count_noise(RigExplanation& out) const;
   [[nodiscard]] bool filtered() const;

@@ -12,14 +12,23 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);  // median |d4| of white noise; sqrt 70
-constexpr double kWhole = 0.02;            // a difference is a whole number of steps within this
-constexpr double kMostlyWhole = 0.98;      // of the differences
+// Median of |x| over sigma for a Gaussian, times the gains sqrt(70) and sqrt(12870).
+constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);
+constexpr double kEighthToSigma = 1.0 / (0.67449 * 113.4460);
+constexpr double kOfMotion = 0.8;      // eighth differences have less where the fourth have motion
+constexpr double kWhole = 0.02;        // a difference is a whole number of steps within this
+constexpr double kMostlyWhole = 0.98;  // of the differences
 constexpr double kFewestStepShare = 1e-6;  // of the range: a finer step is how numbers are printed
 constexpr std::uint64_t kSeed = 1987;
 
 double rounded(double value, double step) {
   return step > 0.0 ? step * std::round(value / step) : value;
+}
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 double white_part(double noise, double step) {
@@ -52,30 +61,38 @@ Eigen::VectorXd smoothed(const RigSeries& record) {
   return out;
 }
 
+/// Sixth-order differences; the three values at either end are 0.
+Eigen::VectorXd derivative(const Eigen::VectorXd& x, double interval_s) {
+  const DerivativeWindow window = DerivativeWindow::sharp(interval_s);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  for (Eigen::Index i = 3; i + 3 < x.size(); ++i)
+    for (int j = 1; j <= 3; ++j) out[i] += window.weight(j) * (x[i + j] - x[i - j]);
+  return out;
+}
+
 /// The motion that the twin makes, known exactly.
 RigSeries true_motion(const RigSeries& record) {
   RigSeries out = record;
   out.deflection_m = smoothed(record);
   if (record.config.velocity_measured) return out;
-  const Eigen::VectorXd& x = out.deflection_m;
-  for (Eigen::Index i = 1; i + 1 < x.size(); ++i)
-    out.velocity_mps[i] = 0.5 * (x[i + 1] - x[i - 1]) / record.interval_s;
+  out.velocity_mps = derivative(out.deflection_m, record.interval_s);
   return out;
 }
 
 Eigen::VectorXd force_of(const RigLaw& law, const RigSeries& motion) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(motion.size());
   for (std::size_t c = 0; c < law.columns.size(); ++c) {
-    RigColumn column = law.columns[c];
-    if (column.kind == RigColumn::Kind::kInertia) column.kind = RigColumn::Kind::kAcceleration;
+    const RigColumn& column = law.columns[c];
     const double theta = law.theta[static_cast<Eigen::Index>(c)];
-    if (!is_sign(column, law)) {
+    if (!is_sign(column, law) && column.kind != RigColumn::Kind::kInertia) {
       out += theta * evaluate(column, motion);
       continue;
     }
-    const Eigen::VectorXd sign = motion.velocity_mps.array().sign();
-    out +=
-        theta * (motion.path.hz > 0.0 ? through_mode(sign, motion.path, motion.interval_s) : sign);
+    const Eigen::VectorXd values = column.kind == RigColumn::Kind::kInertia
+                                       ? derivative(motion.velocity_mps, motion.interval_s)
+                                       : Eigen::VectorXd{motion.velocity_mps.array().sign()};
+    out += theta *
+           (motion.path.hz > 0.0 ? through_mode(values, motion.path, motion.interval_s) : values);
   }
   return out;
 }
@@ -162,13 +179,18 @@ double resolution_of(const Eigen::VectorXd& values) {
 
 double white_noise(const Eigen::VectorXd& values) {
   std::vector<double> fourth;
-  for (Eigen::Index i = 4; i < values.size(); ++i)
-    fourth.push_back(std::abs(values[i] - 4.0 * values[i - 1] + 6.0 * values[i - 2] -
-                              4.0 * values[i - 3] + values[i - 4]));
+  std::vector<double> eighth;
+  for (Eigen::Index i = 8; i < values.size(); ++i) {
+    const auto even = [&](Eigen::Index j) { return values[i - 4 - j] + values[i - 4 + j]; };
+    fourth.push_back(std::abs(even(2) - 4.0 * even(1) + 3.0 * even(0)));
+    eighth.push_back(
+        std::abs(even(4) - 8.0 * even(3) + 28.0 * even(2) - 56.0 * even(1) + 35.0 * even(0)));
+  }
   if (fourth.empty()) return 0.0;
-  const auto middle = fourth.begin() + static_cast<std::ptrdiff_t>(fourth.size() / 2);
-  std::nth_element(fourth.begin(), middle, fourth.end());
-  return std::max(kFourthToSigma * *middle, resolution_of(values) / std::sqrt(12.0));
+  const double by_fourth = kFourthToSigma * median_of(fourth);
+  const double by_eighth = kEighthToSigma * median_of(eighth);
+  return std::max(by_eighth < kOfMotion * by_fourth ? by_eighth : by_fourth,
+                  resolution_of(values) / std::sqrt(12.0));
 }
 
 RigFloor rig_floor(const std::vector<RigSeries>& records, const RigLaw& law) {

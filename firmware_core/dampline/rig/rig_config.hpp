@@ -28,6 +28,7 @@ struct RigConfig {
   double prediction_corner_hz{20.0};  ///< the same for the acceleration in a predicted force
   bool velocity_measured{false};      ///< samples carry velocity_mps; otherwise it is derived
   int velocity_half_width{5};         ///< samples to either side of a derived velocity, 1...32
+  bool velocity_sharp{false};         ///< derived by sixth-order differences, three samples wide
   double sign_width_mps{1e-3};        ///< w of the smooth sign erf(0.8862 v / w)
   double still_mps{1e-3};             ///< below it the rig stands still
   std::int64_t block_samples{500};    ///< start value; doubles when the store of blocks is full
@@ -35,7 +36,7 @@ struct RigConfig {
                                                      0.0625, 0.075, 0.0875, 0.1};
 };
 
-/// kInvalidConfig where a value is out of its range (the test function must be 7 to 512 samples to
+/// kInvalidConfig where a value is out of its range (the test function must be 5 to 512 samples to
 /// either side, nodes ascending) and for terms that cannot be told apart.
 [[nodiscard]] Result<RigConfig> check(const RigConfig& config) noexcept;
 [[nodiscard]] Result<RigTerms> check(const RigTerms& terms) noexcept;
@@ -47,7 +48,7 @@ struct RigConfig {
   return half_support_samples(config.corner_hz, config.sample_rate_hz);
 }
 
-inline constexpr int kMinHalfSupport = 7;
+inline constexpr int kMinHalfSupport = 5;
 inline constexpr int kMaxHalfSupport = 512;
 inline constexpr int kMaxVelocityHalfWidth = 32;
 

@@ -18,6 +18,14 @@ DerivativeWindow::DerivativeWindow(int half_width, double interval_s) noexcept
   for (double& weight : weights_) weight /= moment * interval_s;
 }
 
+DerivativeWindow DerivativeWindow::sharp(double interval_s) noexcept {
+  DerivativeWindow out{3, interval_s};
+  constexpr std::array<double, 4> kSixthOrder{0.0, 3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0};
+  for (std::size_t j = 0; j < kSixthOrder.size(); ++j)
+    out.weights_[j] = kSixthOrder[j] / interval_s;
+  return out;
+}
+
 double DerivativeWindow::noise_gain() const noexcept {
   double sum = 0.0;
   for (const double weight : weights_) sum += 2.0 * weight * weight;
@@ -25,7 +33,9 @@ double DerivativeWindow::noise_gain() const noexcept {
 }
 
 RigMotionEstimator::RigMotionEstimator(const RigConfig& config) noexcept
-    : window_{config.velocity_half_width, 1.0 / config.sample_rate_hz},
+    : window_{config.velocity_sharp
+                  ? DerivativeWindow::sharp(1.0 / config.sample_rate_hz)
+                  : DerivativeWindow{config.velocity_half_width, 1.0 / config.sample_rate_hz}},
       velocity_measured_{config.velocity_measured} {}
 
 const RigSample& RigMotionEstimator::ago(int samples) const noexcept {

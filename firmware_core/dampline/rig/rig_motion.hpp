@@ -18,10 +18,12 @@ struct RigMotion {
   double force_n{0.0};
 };
 
-/// Weights of a derivative: j (1 - (j / (h + 1))^2)^2, exact for straight lines.
+/// Weights of a derivative: j (1 - (j / (h + 1))^2)^2, exact for straight lines; or sixth-order
+/// differences, three samples wide and exact for x^6, where noise permits.
 class DerivativeWindow {
  public:
   DerivativeWindow(int half_width, double interval_s) noexcept;
+  [[nodiscard]] static DerivativeWindow sharp(double interval_s) noexcept;
   [[nodiscard]] int half_width() const noexcept { return half_width_; }
   /// Weight at +j; at -j its negative. 1/s.
   [[nodiscard]] double weight(int j) const noexcept {

@@ -13,10 +13,19 @@ namespace {
 
 /// Median of |x| over sigma for a Gaussian, times the gain sqrt(70) of fourth differences.
 constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);
+/// The same for the gain sqrt(12870) of eighth differences.
+constexpr double kEighthToSigma = 1.0 / (0.67449 * 113.4460);
+/// Eighth differences have less than this share of the fourth's where motion is in the fourth.
+constexpr double kOfMotion = 0.8;
 constexpr std::int64_t kBlocksWanted = 80;
-/// Corners as fractions of the rate, within the test function's limits of 7 and 512 samples.
-constexpr double kFastest = 12.0;
+/// Corners as fractions of the rate, within the test function's limits.
+constexpr double kFastest = 6.5;
+constexpr double kFastestPrediction = 12.0;
 constexpr double kSlowest = 1000.0;
+constexpr double kVelocityErrorShare = 0.01;
+
+/// Samples between the two ends of a difference.
+constexpr std::size_t samples_of(std::size_t span) noexcept { return std::size_t{1} << span; }
 
 double fourth(double a, double b, double c, double d, double e) noexcept {
   return std::abs(a - 4.0 * b + 6.0 * c - 4.0 * d + e);
@@ -54,25 +63,60 @@ void RigSurvey::take_differences() noexcept {
   if (step > 0.0 && (resolution_m_ == 0.0 || step < resolution_m_)) resolution_m_ = step;
   deflection_fourth_m_.add(fourth(ago(0).deflection_m, ago(1).deflection_m, ago(2).deflection_m,
                                   ago(3).deflection_m, ago(4).deflection_m));
-  const double span_s = static_cast<double>(kRing - 1) / rate_hz_;
-  double velocity = (ago(0).deflection_m - ago(kRing - 1).deflection_m) / span_s;
+  deflection_eighth_m_.add(eighth());
+  ++velocities_;
   if (velocity_measured_) {
-    velocity = ago(0).velocity_mps;
     velocity_fourth_mps_.add(fourth(ago(0).velocity_mps, ago(1).velocity_mps, ago(2).velocity_mps,
                                     ago(3).velocity_mps, ago(4).velocity_mps));
+    return take_speed(0, ago(0).velocity_mps);
   }
-  speed_mps_.add(std::abs(velocity));
-  velocity_squares_ += velocity * velocity;
-  ++velocities_;
+  for (std::size_t i = 0; i < kSpans; ++i)
+    take_speed(i, (ago(0).deflection_m - ago(samples_of(i)).deflection_m) * rate_hz_ /
+                      static_cast<double>(samples_of(i)));
+}
+
+double RigSurvey::eighth() const noexcept {
+  constexpr std::array<double, 9> kBinomial{1, -8, 28, -56, 70, -56, 28, -8, 1};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kBinomial.size(); ++i) sum += kBinomial[i] * ago(i).deflection_m;
+  return std::abs(sum);
+}
+
+void RigSurvey::take_speed(std::size_t span, double velocity_mps) noexcept {
+  speed_mps_[span].add(std::abs(velocity_mps));
+  velocity_squares_[span] += velocity_mps * velocity_mps;
+}
+
+double RigSurvey::mean_square_mps2(std::size_t span) const noexcept {
+  return velocities_ == 0 ? 0.0 : velocity_squares_[span] / static_cast<double>(velocities_);
+}
+
+/// The longest span whose differences have lost little of the velocity that shorter ones show
+/// above their noise.
+std::size_t RigSurvey::longest_faithful_span() const noexcept {
+  constexpr double kKept = 0.9;  // of the mean square
+  if (velocity_measured_) return 0;
+  double most = 0.0;
+  std::size_t out = kSpans - 1;
+  for (std::size_t i = 0; i < kSpans; ++i) {
+    const double signal = signal_mps2(i);
+    if (!(signal > 0.5 * mean_square_mps2(i))) continue;
+    if (signal < kKept * most) break;
+    most = std::max(most, signal);
+    out = i;
+  }
+  return out;
 }
 
 double RigSurvey::deflection_noise_m() const noexcept {
   const double rounding = resolution_m_ / std::sqrt(12.0);
-  return std::max(rounding, kFourthToSigma * deflection_fourth_m_.quantile(0.5));
+  const double fourth = kFourthToSigma * deflection_fourth_m_.quantile(0.5);
+  const double eighth = kEighthToSigma * deflection_eighth_m_.quantile(0.5);
+  return std::max(rounding, eighth < kOfMotion * fourth ? eighth : fourth);
 }
 
 double RigSurvey::velocity_rms_mps() const noexcept {
-  return velocities_ == 0 ? 0.0 : std::sqrt(velocity_squares_ / static_cast<double>(velocities_));
+  return std::sqrt(mean_square_mps2(longest_faithful_span()));
 }
 
 double RigSurvey::motion_frequency_hz() const noexcept {
@@ -85,17 +129,41 @@ double RigSurvey::derivative_error_mps(int half_width) const noexcept {
   return DerivativeWindow{half_width, 1.0 / rate_hz_}.noise_gain() * deflection_noise_m();
 }
 
+/// Mean square of the velocity that differences over a span show, less that of their noise.
+double RigSurvey::signal_mps2(std::size_t span) const noexcept {
+  const double noise = deflection_noise_m() * rate_hz_ / static_cast<double>(samples_of(span));
+  return mean_square_mps2(span) - 2.0 * noise * noise;
+}
+
+/// Where the difference of the neighbours on either side loses velocity and noise permits more.
+/// sinc^2: over two and four samples three and fifteen parts are lost of what is lost over one,
+/// which shows the whole less one part. A motion with corners loses in proportion to the span, and
+/// sixth-order differences would ring there.
+bool RigSurvey::wants_sharp_velocity() const noexcept {
+  constexpr double kLost = 0.002;
+  constexpr double kSmooth = 3.75;  // times the loss over two samples; sinc: 5, corners: 2.5
+  if (velocity_measured_) return false;
+  const double one = signal_mps2(0);
+  const double two = one - signal_mps2(1);
+  const double four = one - signal_mps2(2);
+  return two > 0.75 * kLost * one && four > kSmooth * two &&
+         DerivativeWindow::sharp(1.0 / rate_hz_).noise_gain() * deflection_noise_m() <
+             kVelocityErrorShare * velocity_rms_mps();
+}
+
 int RigSurvey::choose_half_width(const RigConfig& config) const noexcept {
-  constexpr double kErrorShare = 0.01;
   const int widest = std::clamp(half_support_samples(config) / 4, 1, kMaxVelocityHalfWidth);
   int half_width = 1;
-  while (half_width < widest && derivative_error_mps(half_width) > kErrorShare * velocity_rms_mps())
+  while (half_width < widest &&
+         derivative_error_mps(half_width) > kVelocityErrorShare * velocity_rms_mps())
     ++half_width;
   return half_width;
 }
 
 double RigSurvey::velocity_error_mps(const RigConfig& config) const noexcept {
   if (velocity_measured_) return kFourthToSigma * velocity_fourth_mps_.quantile(0.5);
+  if (config.velocity_sharp)
+    return DerivativeWindow::sharp(1.0 / rate_hz_).noise_gain() * deflection_noise_m();
   return derivative_error_mps(config.velocity_half_width);
 }
 
@@ -122,15 +190,16 @@ double RigSurvey::choose_corner_hz(const RigTerms& terms) const noexcept {
 }
 
 Result<RigConfig> RigSurvey::suggest(const RigTerms& terms, double corner_hz) const noexcept {
-  const double top = speed_mps_.quantile(0.99);
+  const double top = speed_mps_[longest_faithful_span()].quantile(0.99);
   if (!(top > 0.0) || !(squares_m2_ > 0.0)) return Errc::kNotReady;
   RigConfig out;
   out.sample_rate_hz = rate_hz_;
   out.velocity_measured = velocity_measured_;
   out.corner_hz = corner_hz > 0.0 ? corner_hz : choose_corner_hz(terms);
   out.prediction_corner_hz =
-      std::max(out.corner_hz, quiet_corner_hz(rate_hz_ / kFastest, rate_hz_ / kSlowest));
-  out.velocity_half_width = choose_half_width(out);
+      std::max(out.corner_hz, quiet_corner_hz(rate_hz_ / kFastestPrediction, rate_hz_ / kSlowest));
+  out.velocity_sharp = wants_sharp_velocity();
+  out.velocity_half_width = out.velocity_sharp ? 3 : choose_half_width(out);
   const double error = velocity_error_mps(out);
   out.sign_width_mps = std::max(1.2533 * error, 1e-4 * velocity_rms_mps());
   out.still_mps = std::max(3.0 * error, 0.01 * velocity_rms_mps());

@@ -20,11 +20,12 @@ class RigSurvey {
 
   /// Settings with
   ///  - corner: a fiftieth of the rate, or four times the motion's own frequency where that is more
-  ///    (a twelfth of the rate at most), then lower by half octaves until noise makes less than a
-  ///    thousandth of the variance of <x, psi''>, the column of a driven mass;
+  ///    (two thirteenths of the rate at most), then lower by half octaves until noise makes less
+  ///    than a thousandth of the variance of <x, psi''>, the column of a driven mass;
   ///  - prediction corner: by the same rule from a twelfth of the rate, not below the corner;
   ///  - derivative of the deflection: as short as noise of 1 % of the rms velocity permits, because
-  ///    a longer one shifts the reversals, a quarter of the test function at most;
+  ///    a longer one shifts the reversals, a quarter of the test function at most; sixth-order
+  ///    differences where a difference over two samples would lose 0.2 % of the mean square;
   ///  - sign width: 1.2533 standard deviations of the velocity error (E[sign v | measured v]);
   ///  - standstill: three of those, or 1 % of the rms velocity;
   ///  - nodes: eight equal segments up to the 99 % quantile of |v|;
@@ -34,7 +35,8 @@ class RigSurvey {
   [[nodiscard]] Result<RigConfig> suggest(const RigTerms& terms,
                                           double corner_hz = 0.0) const noexcept;
 
-  /// White noise of the deflection, rms, from fourth differences; at least that of its resolution.
+  /// White noise of the deflection, rms, from fourth differences, or from eighth ones where those
+  /// show that the motion itself is in the fourth; at least that of its resolution.
   [[nodiscard]] double deflection_noise_m() const noexcept;
   [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
   /// sqrt of mean v^2 / variance of x, in Hz: the frequency of a harmonic motion.
@@ -42,13 +44,20 @@ class RigSurvey {
 
  private:
   static constexpr std::size_t kRing = 17;
+  static constexpr std::size_t kSpans = 5;  ///< differences over 1, 2, 4, 8 and 16 samples
 
   void take_differences() noexcept;
+  [[nodiscard]] double eighth() const noexcept;
+  void take_speed(std::size_t span, double velocity_mps) noexcept;
+  [[nodiscard]] double mean_square_mps2(std::size_t span) const noexcept;
+  [[nodiscard]] double signal_mps2(std::size_t span) const noexcept;
+  [[nodiscard]] std::size_t longest_faithful_span() const noexcept;
   [[nodiscard]] const RigSample& ago(std::size_t samples) const noexcept;
   [[nodiscard]] double choose_corner_hz(const RigTerms& terms) const noexcept;
   [[nodiscard]] double quiet_corner_hz(double highest_hz, double lowest_hz) const noexcept;
   [[nodiscard]] double velocity_rms_mps() const noexcept;
   [[nodiscard]] double derivative_error_mps(int half_width) const noexcept;
+  [[nodiscard]] bool wants_sharp_velocity() const noexcept;
   [[nodiscard]] int choose_half_width(const RigConfig& config) const noexcept;
   [[nodiscard]] double velocity_error_mps(const RigConfig& config) const noexcept;
 
@@ -61,10 +70,11 @@ class RigSurvey {
   std::uint64_t velocities_{0};
   double mean_m_{0.0};
   double squares_m2_{0.0};
-  double velocity_squares_{0.0};
+  std::array<double, kSpans> velocity_squares_{};
   double resolution_m_{0.0};  ///< smallest step other than 0
-  LogHistogram speed_mps_;
+  std::array<LogHistogram, kSpans> speed_mps_;
   LogHistogram deflection_fourth_m_;
+  LogHistogram deflection_eighth_m_;
   LogHistogram velocity_fourth_mps_;
 };
 
