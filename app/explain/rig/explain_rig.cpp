@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "app/error.hpp"
 #include "app/explain/rig/driven_mass.hpp"
@@ -126,41 +128,69 @@ bool has_gaps(const std::vector<RigSeries>& records) {
   return std::any_of(records.begin(), records.end(), [](const RigSeries& s) { return s.has_gap; });
 }
 
+struct Explained {
+  Config config;
+  std::vector<RigSeries> records;
+  std::vector<RigGains> gains;
+  RigExplanation explanation;
+};
+
+Explained search(const Config& config, const RigExplainOptions& options) {
+  Explained out{config, read_records(config, options), {}, {}};
+  for (const RigSeries& record : out.records) out.gains.push_back(checked_gains(record));
+  out.explanation = RigSearch{config, out.records}.run();
+  return out;
+}
+
+/// A mass behind a filter, which takes noise away, has to be plainer or better by far.
+bool is_preferred(const RigExplanation& second, const RigExplanation& first) {
+  constexpr double kByFar = 0.1;
+  if (!second.base.fit.ok) return false;
+  const double share = second.final.fit.held_out_nmse / first.final.fit.held_out_nmse;
+  if (!second.is_complete()) return !first.is_complete() && share < 1.0;
+  return !first.is_complete() || second.steps.size() < first.steps.size() || share < kByFar;
+}
+
+/// Where an inertia carries much of the force, the mass is identified too.
+void try_driven_mass(Explained& found, const RigExplainOptions& options) {
+  RigExplanation& first = found.explanation;
+  if (found.config.model.inertia != "auto" || !is_driven_mass(found.records)) return;
+  if (has_gaps(found.records)) {
+    first.notes.insert(first.notes.begin(),
+                       "An inertia carries much of the force, but the record has gaps: no mass was "
+                       "identified, and what follows describes the force without it.");
+    return;
+  }
+  Config config = found.config;
+  config.model.inertia = "identify";
+  Explained driven = search(config, options);
+  RigExplanation& second = driven.explanation;
+  if (!is_preferred(second, first)) return;
+  second.notes.insert(second.notes.begin(),
+                      "An inertia carries much of the force: the mass is identified too. To leave "
+                      "it out: [model] inertia = \"none\"");
+  found = std::move(driven);
+}
+
 }  // namespace
 
 RigExplanation explain_rig(const Config& given, const RigExplainOptions& options) {
-  Config config = given;
-  std::vector<RigSeries> records = read_records(config, options);
-  std::vector<std::string> notes;
-  if (config.model.inertia == "auto" && is_driven_mass(records)) {
-    const bool gaps = has_gaps(records);
-    notes.emplace_back(
-        gaps ? "An inertia carries much of the force, but the record has gaps: no mass was "
-               "identified, and what follows describes the force without it."
-             : "An inertia carries much of the force: the mass is identified too. To leave it out: "
-               "[model] inertia = \"none\"");
-    if (!gaps) {
-      config.model.inertia = "identify";
-      records = read_records(config, options);
-    }
-  }
-  std::vector<RigGains> gains;
-  gains.reserve(records.size());
-  for (const RigSeries& record : records) gains.push_back(checked_gains(record));
-  RigSearch search{config, records};
-  RigExplanation out = search.run();
-  out.notes.insert(out.notes.begin(), notes.begin(), notes.end());
+  Explained found = search(given, options);
+  try_driven_mass(found, options);
+  const std::vector<RigSeries>& records = found.records;
+  RigExplanation& out = found.explanation;
   for (const RigSeries& record : records)
     for (const std::string& note : record.notes)
       out.notes.push_back(records.size() > 1 ? fmt::format("{}: {}", record.record, note) : note);
   if (!out.base.fit.ok)
     throw RunError{fmt::format("{}: too little motion to determine the model", records[0].record)};
-  judge_gains(gains, out);
+  judge_gains(found.gains, out);
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(
-        out, read_rig_series(path, config, options.skip_bad_lines, options.reference_column)));
+        out,
+        read_rig_series(path, found.config, options.skip_bad_lines, options.reference_column)));
   gather_evidence(records, out);
-  return out;
+  return std::move(found.explanation);
 }
 
 }  // namespace dampline::app
