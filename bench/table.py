@@ -210,6 +210,8 @@ def other_processors(table, text):
         table.add("Cortex-M7 in an emulator", f"{unit} unit, {level}",
                   f"{mean} instructions a sample, dearest {most}",
                   f"flash {flash}, RAM {ram}, stack {stack}; {same}")
+    for figure in re.findall(r"^x86-64 without AVX2: (.*)$", text, re.M):
+        table.add("x86-64 without AVX2, in an emulator", "beside the host", figure)
     for what, figure in re.findall(r"^64-bit Arm,? (.*): (.*)$", text, re.M):
         passed = re.search(r"PASSED *\] (.*)\.", figure)
         table.add("64-bit Arm in an emulator", what, passed[1] + " pass" if passed else figure)

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 namespace {
 
@@ -153,7 +155,7 @@ void Identifier::start_stretch(std::int64_t tick) noexcept {
   average_.reset();
 }
 
-void Identifier::process(const Sample& sample, UpdateResult& result) noexcept {
+DAMPLINE_WIDE void Identifier::process(const Sample& sample, UpdateResult& result) noexcept {
   const auto& a = sample.accel_mps2;
   const double relative_mps2 = 2.0 * a[0] - a[1] - a[2];
   const std::int64_t n = count_++;
@@ -221,18 +223,18 @@ void Identifier::begin_raster(std::int64_t first_law) noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {
     const int stride = rows_.bank().stride(s);
     const std::int64_t phase = (stretch_tick_ + first_law - rows_.bank().half(s)) % stride;
-    raster_[s] = static_cast<int>(phase < 0 ? phase + stride : phase);
+    const auto at = static_cast<int>(phase < 0 ? phase + stride : phase);
+    until_row_[s] = (stride / 2 - at + stride) % stride + 1;
   }
 }
 
 void Identifier::build_rows(std::int64_t newest) noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {
-    const int stride = rows_.bank().stride(s);
-    const bool on_raster = raster_[s] == stride / 2;
-    if (++raster_[s] == stride) raster_[s] = 0;
+    if (--until_row_[s] > 0) continue;
+    until_row_[s] = rows_.bank().stride(s);
     const int half = rows_.bank().half(s);
     const std::int64_t centre = newest - half;
-    if (on_raster && centre - half >= first_law_) build_row(s, centre);
+    if (centre - half >= first_law_) build_row(s, centre);
   }
 }
 

@@ -134,15 +134,15 @@ class Identifier {
   bool any_{false};      // a sample was given
   bool started_{false};  // a sample came through the screen
   bool in_stretch_{false};
-  std::int64_t newest_tick_{0};        // given to update()
-  std::int64_t last_tick_{0};          // through the screen
-  std::int64_t stretch_tick_{0};       // tick of the stretch's sample 0
-  std::int64_t count_{0};              // samples of the stretch
-  std::int64_t first_law_{0};          // first sample of the stretch with the law's columns
-  std::array<int, kScales> raster_{};  // where the next centre of each scale lies in its stride
-  std::int64_t open_block_{0};         // oldest block that may still get rows
-  double activity_{0.0};               // smoothed v^2, (m/s)^2
-  double input_activity_{0.0};         // smoothed squared change of the wheelsets' mean, (m/s^2)^2
+  std::int64_t newest_tick_{0};           // given to update()
+  std::int64_t last_tick_{0};             // through the screen
+  std::int64_t stretch_tick_{0};          // tick of the stretch's sample 0
+  std::int64_t count_{0};                 // samples of the stretch
+  std::int64_t first_law_{0};             // first sample of the stretch with the law's columns
+  std::array<int, kScales> until_row_{};  // samples until the next centre of each scale
+  std::int64_t open_block_{0};            // oldest block that may still get rows
+  double activity_{0.0};                  // smoothed v^2, (m/s)^2
+  double input_activity_{0.0};  // smoothed squared change of the wheelsets' mean, (m/s^2)^2
   double last_input_mps2_{0.0};
 
   BlockReports reports_;

@@ -130,8 +130,8 @@ TEST(Information, NeverTakesNotANumberForASolution) {
 Factor factor_of_panels(const Eigen::MatrixXd& ab) {
   Factor out;
   for (int i = 0; i < ab.rows(); i += 5) {
-    std::array<Factor::Row, 5> panel;
-    for (int m = 0; m < 5; ++m) panel[static_cast<std::size_t>(m)] = ab.row(i + m).transpose();
+    Factor::Panel<5> panel;
+    for (int m = 0; m < 5; ++m) panel.set(static_cast<std::size_t>(m), ab.row(i + m).transpose());
     out.absorb_panel(panel);
   }
   return out;

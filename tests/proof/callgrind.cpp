@@ -30,7 +30,7 @@ std::vector<std::uint64_t> instructions_per_call(const std::string& command,
   fs::create_directories(folder);
   const fs::path prefix = fs::path{folder} / "calls";
   const CommandResult run = run_command(
-      "valgrind --quiet --tool=callgrind --zero-before='" + function + "' --dump-after='" +
+      "valgrind --quiet --tool=callgrind --toggle-collect='" + function + "' --dump-after='" +
       function + "' --callgrind-out-file='" + prefix.string() + "' " + command + " 2>&1");
   if (run.status != 0) throw std::runtime_error{"valgrind: " + run.output};
   std::vector<std::uint64_t> counts;

@@ -37,23 +37,32 @@ class LawColumns {
     double left = 0.0;
     for (std::size_t i = 0; i < kCurveSegments; ++i) {
       const double length = i + 1 < kCurveSegments ? nodes_mps[i] - left : 1e3;
-      left_mps_[static_cast<int>(i)] = static_cast<float>(left);
-      length_mps_[static_cast<int>(i)] = static_cast<float>(length);
+      left_mps_[i] = static_cast<float>(left);
+      length_mps_[i] = static_cast<float>(length);
       left = nodes_mps[i];
     }
     for (std::size_t i = 0; i < kLawWidths; ++i)
-      slope_[static_cast<int>(i)] = static_cast<float>(kSignSlope / kLawWidthMps[i]);
+      slope_[i] = static_cast<float>(kSignSlope / kLawWidthMps[i]);
   }
 
   /// Lanes 0...9: erf(0.8862 v / w_i), no unit; lanes 12...19: ramp_i(|v|) sign v, m/s.
   [[nodiscard]] Lanes lanes(double velocity_mps) const noexcept {
+    Lanes out;
+    lanes_to(out.data(), velocity_mps);
+    return out;
+  }
+  /// The same to kLanes numbers from `out` on. Plain loops, so that compilers make vectors of them
+  /// as wide as the processor has.
+  void lanes_to(float* __restrict out, double velocity_mps) const noexcept {
     const auto velocity = static_cast<float>(velocity_mps);
     const float speed = std::abs(velocity);
     const float sign = std::copysign(1.0F, velocity);
-    Lanes out;
-    out.head<kSignLanes>() = sign * erf_of_magnitudes<kSignLanes>(slope_ * speed);
-    out.tail<kRamps>() = sign * (speed - left_mps_).max(0.0F).min(length_mps_);
-    return out;
+    for (std::size_t i = 0; i < kSigns; ++i) out[i] = sign * erf_of_magnitude(slope_[i] * speed);
+    for (std::size_t i = 0; i < kRamps; ++i) {
+      const float beyond = speed - left_mps_[i];
+      const float ramp = beyond > 0.0F ? beyond : 0.0F;
+      out[kSigns + i] = sign * (ramp < length_mps_[i] ? ramp : length_mps_[i]);
+    }
   }
 
   /// Rows 0...9: the signs; rows 10...17: the ramps.
@@ -61,7 +70,8 @@ class LawColumns {
     Values out;
     out.head<static_cast<int>(kLawWidths)>() =
         lanes.head<static_cast<int>(kLawWidths)>().matrix().cast<double>();
-    out.tail<kRamps>() = lanes.tail<kRamps>().matrix().cast<double>();
+    constexpr auto kTail = static_cast<int>(kRamps);
+    out.tail<kTail>() = lanes.tail<kTail>().matrix().cast<double>();
     return out;
   }
   [[nodiscard]] Values operator()(double velocity_mps) const noexcept {
@@ -69,10 +79,11 @@ class LawColumns {
   }
 
  private:
-  static constexpr int kRamps = static_cast<int>(kCurveSegments);
-  Eigen::Array<float, kSignLanes, 1> slope_ = Eigen::Array<float, kSignLanes, 1>::Zero();
-  Eigen::Array<float, kRamps, 1> left_mps_;
-  Eigen::Array<float, kRamps, 1> length_mps_;
+  static constexpr auto kSigns = static_cast<std::size_t>(kSignLanes);
+  static constexpr std::size_t kRamps = kCurveSegments;
+  std::array<float, kSigns> slope_{};
+  std::array<float, kRamps> left_mps_{};
+  std::array<float, kRamps> length_mps_{};
 };
 
 }  // namespace dampline

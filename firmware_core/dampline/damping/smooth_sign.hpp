@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -46,19 +45,16 @@ inline double erf_of_magnitude(double magnitude) noexcept {
   return below + (position - whole) * (above - below);
 }
 
-/// erf of numbers that are not negative, in single precision; error below 2e-6. Abramowitz and
+/// erf of a number that is not negative, in single precision; error below 2e-6. Abramowitz and
 /// Stegun, Handbook of Mathematical Functions, 7.1.28: of equal operations for every number, so
 /// that several go through one instruction, and the same on every machine.
-template <int Count>
-[[nodiscard]] Eigen::Array<float, Count, 1> erf_of_magnitudes(
-    const Eigen::Array<float, Count, 1>& x) noexcept {
-  Eigen::Array<float, Count, 1> p =
-      (((((4.30638e-5F * x + 2.765672e-4F) * x + 1.520143e-4F) * x + 9.2705272e-3F) * x +
-        4.22820123e-2F) *
-           x +
-       7.05230784e-2F) *
-          x +
-      1.0F;
+inline float erf_of_magnitude(float x) noexcept {
+  float p = (((((4.30638e-5F * x + 2.765672e-4F) * x + 1.520143e-4F) * x + 9.2705272e-3F) * x +
+              4.22820123e-2F) *
+                 x +
+             7.05230784e-2F) *
+                x +
+            1.0F;
   p *= p;
   p *= p;
   p *= p;

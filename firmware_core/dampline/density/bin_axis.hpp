@@ -49,9 +49,16 @@ class BinAxis {
     }
   }
 
+  /// Where x lies: from 0 up to Bins inside the range.
+  [[nodiscard]] double place(double x) const noexcept { return (x - low_) * per_width_; }
+  /// Of a place, not of a NaN.
+  [[nodiscard]] static bool inside(double place) noexcept {
+    return place >= 0.0 && place < static_cast<double>(Bins);
+  }
+
   /// Bin of x, kBelow or kAbove. x must be finite.
   [[nodiscard]] int locate(double x) const noexcept {
-    const double place = (x - low_) * per_width_;
+    const double place = this->place(x);
     if (place < 0.0) return kBelow;
     return place < static_cast<double>(Bins) ? static_cast<int>(place) : kAbove;
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/density/drift_sums.hpp"
 
-#include <cmath>
-
 namespace dampline {
 
 void DriftMoments::add(const DriftMoments& other, double factor) noexcept {
@@ -19,22 +17,6 @@ DriftBins::DriftBins(const std::array<double, kCurveSegments>& curve_nodes_mps) 
   nodes_[1] = 0.5 * curve_nodes_mps[0];
   for (std::size_t i = 0; i < kCurveSegments; ++i) nodes_[i + 2] = curve_nodes_mps[i];
   for (std::size_t i = 0; i < kPerSide; ++i) per_width_[i] = 1.0 / (nodes_[i + 1] - nodes_[i]);
-}
-
-void DriftSums::take(const DriftBins& bins, double velocity_mps, double deflection_m,
-                     double frame_mps2, double weight) noexcept {
-  const double speed_mps = std::abs(velocity_mps);
-  const std::size_t bin = bins.locate(speed_mps);
-  const double u = bins.place(bin, speed_mps);
-  DriftMoments& m = sides[velocity_mps < 0.0 ? 0 : 1][bin];
-  const double wu = weight * u;
-  m.n += weight;
-  m.u += wu;
-  m.uu += wu * u;
-  m.y += weight * deflection_m;
-  m.uy += wu * deflection_m;
-  m.a += weight * frame_mps2;
-  m.ua += wu * frame_mps2;
 }
 
 void DriftSums::add(const DriftSums& other, double factor) noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "dampline/snapshot.hpp"
@@ -13,6 +14,15 @@ struct DriftMoments {
   double y{0.0}, uy{0.0};          ///< of y, u y; m
   double a{0.0}, ua{0.0};          ///< of z_b'', u z_b''; m/s^2
   void add(const DriftMoments& other, double factor) noexcept;
+  void add(const DriftMoments& other) noexcept {
+    n += other.n;
+    u += other.u;
+    uu += other.uu;
+    y += other.y;
+    uy += other.uy;
+    a += other.a;
+    ua += other.ua;
+  }
 };
 
 /// The bins: on either side of zero half the curve's first segment, its other half, and the
@@ -41,13 +51,38 @@ class DriftBins {
   std::array<double, kPerSide> per_width_{};
 };
 
+/// What one instant adds, and where.
+struct DriftPoint {
+  std::size_t side{0};
+  std::size_t bin{0};
+  DriftMoments moments;
+};
+
+/// Of finite numbers.
+[[nodiscard]] inline DriftPoint drift_point(const DriftBins& bins, double velocity_mps,
+                                            double deflection_m, double frame_mps2,
+                                            double weight) noexcept {
+  const double speed_mps = std::abs(velocity_mps);
+  const std::size_t bin = bins.locate(speed_mps);
+  const double u = bins.place(bin, speed_mps);
+  const double wu = weight * u;
+  return {.side = velocity_mps < 0.0 ? std::size_t{0} : std::size_t{1},
+          .bin = bin,
+          .moments = {.n = weight,
+                      .u = wu,
+                      .uu = wu * u,
+                      .y = weight * deflection_m,
+                      .uy = wu * deflection_m,
+                      .a = weight * frame_mps2,
+                      .ua = wu * frame_mps2}};
+}
+
 /// Everything that the weak form and the known-input form need of a stretch of motion. Sums add.
 struct DriftSums {
   /// [0]: v < 0, [1]: v >= 0.
   std::array<std::array<DriftMoments, DriftBins::kPerSide>, 2> sides{};
 
-  void take(const DriftBins& bins, double velocity_mps, double deflection_m, double frame_mps2,
-            double weight) noexcept;
+  void take(const DriftPoint& point) noexcept { sides[point.side][point.bin].add(point.moments); }
   void add(const DriftSums& other, double factor) noexcept;
   void scale(double factor) noexcept;
   [[nodiscard]] double count() const noexcept;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 namespace {
 
@@ -65,7 +67,7 @@ FokkerPlanck::FokkerPlanck(const FokkerPlanckConfig& config) noexcept
       spectrum_{config.sample_rate_hz},
       powers_{config.memory_s / kBlockS} {}
 
-void FokkerPlanck::update(const Motion& motion) noexcept {
+DAMPLINE_WIDE void FokkerPlanck::update(const Motion& motion) noexcept {
   if (!finite(motion)) {
     ++not_finite_;
     return;
@@ -75,8 +77,9 @@ void FokkerPlanck::update(const Motion& motion) noexcept {
     return;
   }
   if (any_ && motion.tick != last_tick_ + 1) spectrum_.reset();
-  const std::int64_t block = motion.tick / block_ticks_;
-  if (!any_ || block != block_) begin_block(block);
+  const std::int64_t into_block = motion.tick - block_ * block_ticks_;
+  if (!any_ || into_block < 0 || into_block >= block_ticks_)
+    begin_block(motion.tick / block_ticks_);
   last_tick_ = motion.tick;
   const double v = motion.velocity_mps;
   const double y = motion.deflection_m;
@@ -87,10 +90,9 @@ void FokkerPlanck::update(const Motion& motion) noexcept {
   deflections_.update(y);
   joint_.update(y, v);
   Group& group = groups_[group_];
-  group.all.take(bins_, v, y, motion.frame_mps2, w);
-  if (std::abs(v) > reversal_s_ * std::abs(motion.relative_mps2)) {
-    group.away.take(bins_, v, y, motion.frame_mps2, w);
-  }
+  const DriftPoint point = drift_point(bins_, v, y, motion.frame_mps2, w);
+  group.all.take(point);
+  if (std::abs(v) > reversal_s_ * std::abs(motion.relative_mps2)) group.away.take(point);
   spectrum_.update(input_mps2, w, group.input);
   modulation_.take(y, input_mps2, w);
   powers_.take(v, input_mps2);

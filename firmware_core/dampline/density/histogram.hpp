@@ -44,24 +44,11 @@ class Histogram {
       : axis_{config.range}, weight_{config.memory_samples} {}
 
   void update(double x, std::size_t group = 0) noexcept {
-    if (!std::isfinite(x)) {
-      ++not_finite_;
-      return;
-    }
-    for (int folds = axis_.learn(x); folds > 0; --folds) fold();
-    const double factor = weight_.step();
-    if (factor != 1.0) scale(factor);
-    const double w = weight_.value();
-    const int bin = axis_.locate(x);
-    ++samples_;
-    total_ += w;
-    if (bin == Axis::kBelow) {
-      below_ += w;
-    } else if (bin == Axis::kAbove) {
-      above_ += w;
-    } else {
-      masses_[group][static_cast<std::size_t>(bin)] += w;
-    }
+    const double place = axis_.place(x);
+    if (weight_.forgets() || axis_.learning() || !Axis::inside(place))
+      return update_slowly(x, group);
+    ++usual_;
+    masses_[group][static_cast<std::size_t>(static_cast<int>(place))] += 1.0;
   }
 
   /// Adds another histogram's samples. kMismatch when bins or memories differ. Returns the samples
@@ -74,16 +61,16 @@ class Histogram {
     for (std::size_t g = 0; g < Groups; ++g) {
       for (std::size_t b = 0; b < Bins; ++b) masses_[g][b] += factor * other.masses_[g][b];
     }
-    total_ += factor * other.total_;
+    total_ += factor * other.total();
     below_ += factor * other.below_;
     above_ += factor * other.above_;
-    samples_ += other.samples_;
+    samples_ += other.samples();
     not_finite_ += other.not_finite_;
-    return samples_;
+    return samples();
   }
 
   [[nodiscard]] const Axis& axis() const noexcept { return axis_; }
-  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_ + usual_; }
   [[nodiscard]] std::uint64_t not_finite() const noexcept { return not_finite_; }
 
   /// Share of the mass in a bin, below the range, above it: together 1 (0 without samples).
@@ -104,8 +91,30 @@ class Histogram {
   }
 
  private:
+  /// Of all samples; those that were usual have weight 1, since nothing is forgotten then.
+  [[nodiscard]] double total() const noexcept { return total_ + static_cast<double>(usual_); }
+  void update_slowly(double x, std::size_t group) noexcept {
+    if (!std::isfinite(x)) {
+      ++not_finite_;
+      return;
+    }
+    for (int folds = axis_.learn(x); folds > 0; --folds) fold();
+    const double factor = weight_.step();
+    if (factor != 1.0) scale(factor);
+    const double w = weight_.value();
+    const int bin = axis_.locate(x);
+    ++samples_;
+    total_ += w;
+    if (bin == Axis::kBelow) {
+      below_ += w;
+    } else if (bin == Axis::kAbove) {
+      above_ += w;
+    } else {
+      masses_[group][static_cast<std::size_t>(bin)] += w;
+    }
+  }
   [[nodiscard]] double part(double mass) const noexcept {
-    return total_ > 0.0 ? mass / total_ : 0.0;
+    return total() > 0.0 ? mass / total() : 0.0;
   }
   [[nodiscard]] double raw(std::size_t bin) const noexcept {
     double sum = 0.0;
@@ -134,7 +143,8 @@ class Histogram {
   double total_{0.0};
   double below_{0.0};
   double above_{0.0};
-  std::uint64_t samples_{0};
+  std::uint64_t usual_{0};    // samples of weight 1 within a range that is known
+  std::uint64_t samples_{0};  // all others
   std::uint64_t not_finite_{0};
 };
 

@@ -8,7 +8,9 @@ namespace dampline {
 
 /// Spectral level of a signal at equally spaced frequencies, streamed: mean of Hann-windowed
 /// periodograms of 512 samples that overlap by half (Welch 1967), by Goertzel's recursion, so that
-/// each sample costs the same and no sample is stored. At 300 samples a second the lines lie at
+/// no sample is stored. The recursion runs over halves of 256 samples without a window; two halves
+/// make a transform, and the window is three neighbouring lines of it. Each sample costs the same
+/// but the last of a half, with some 50 operations a line. At 300 samples a second the lines lie at
 /// 1.17, 1.76, ... 28.7 Hz; a constant in the signal reaches none of them.
 class InputSpectrum {
  public:
@@ -36,19 +38,24 @@ class InputSpectrum {
  private:
   static constexpr std::size_t kFirstLine = 2;  // a Hann window spreads a constant over lines 0, 1
   static constexpr std::size_t kHop = kLength / 2;
-  using Lines = std::array<double, kLines>;
-  struct Bank {
-    Lines last{};
-    Lines before{};
-    std::size_t place{0};
+  static constexpr std::size_t kLinesUsed =
+      52;  // from line kFirstLine - 1 on: neighbours, whole vectors
+  using Lines = std::array<double, kLinesUsed>;
+  /// A transform of one half, about its first sample.
+  struct Half {
+    Lines real{};
+    Lines imaginary{};
   };
-  void push(Bank& bank, double x, double weight, Sums& sums) noexcept;
+  void end_half(double weight, Sums& sums) noexcept;
 
   double sample_rate_hz_;
-  Lines twice_cosine_{};
-  std::array<double, kHop> window_{};  // its first half; the second is the mirror image
-  std::array<Bank, 2> banks_{};
-  bool second_runs_{false};
+  Lines cosine_{};
+  Lines sine_{};
+  Lines last_{};
+  Lines before_{};
+  Half first_{};  // of the transform that the next half completes
+  std::size_t place_{0};
+  bool has_first_{false};
 };
 
 }  // namespace dampline

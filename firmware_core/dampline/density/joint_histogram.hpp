@@ -39,6 +39,55 @@ class JointHistogram {
       : x_{config.x}, y_{config.y}, weight_{config.memory_samples} {}
 
   void update(double x, double y) noexcept {
+    const double x_place = x_.place(x);
+    const double y_place = y_.place(y);
+    if (weight_.forgets() || x_.learning() || y_.learning() || !XAxis::inside(x_place) ||
+        !YAxis::inside(y_place))
+      return update_slowly(x, y);
+    ++usual_;
+    masses_[static_cast<std::size_t>(static_cast<int>(x_place))]
+           [static_cast<std::size_t>(static_cast<int>(y_place))] += 1.0;
+  }
+
+  /// Adds another histogram's samples. kMismatch when bins or memories differ.
+  Result<std::uint64_t> merge(const JointHistogram& other) noexcept {
+    if (!x_.same_bins(other.x_) || !y_.same_bins(other.y_) ||
+        weight_.growth() != other.weight_.growth()) {
+      return Errc::kMismatch;
+    }
+    const double factor = weight_.value() / other.weight_.value();
+    for (std::size_t i = 0; i < XBins; ++i) {
+      for (std::size_t j = 0; j < YBins; ++j) masses_[i][j] += factor * other.masses_[i][j];
+    }
+    total_ += factor * other.total();
+    outside_ += factor * other.outside_;
+    samples_ += other.samples();
+    not_finite_ += other.not_finite_;
+    return samples();
+  }
+
+  [[nodiscard]] const XAxis& x_axis() const noexcept { return x_; }
+  [[nodiscard]] const YAxis& y_axis() const noexcept { return y_; }
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_ + usual_; }
+  [[nodiscard]] std::uint64_t not_finite() const noexcept { return not_finite_; }
+
+  /// Share of the mass in a cell and outside all cells: together 1 (0 without samples).
+  [[nodiscard]] double share(std::size_t i, std::size_t j) const noexcept {
+    return total() > 0.0 ? masses_[i][j] / total() : 0.0;
+  }
+  [[nodiscard]] double share_outside() const noexcept {
+    return total() > 0.0 ? outside_ / total() : 0.0;
+  }
+  /// Probability per unit of x and of y. Its integral and share_outside() make 1.
+  [[nodiscard]] double density(std::size_t i, std::size_t j) const noexcept {
+    return share(i, j) / (x_.width() * y_.width());
+  }
+
+ private:
+  /// Of all samples; those that were usual have weight 1, since nothing is forgotten then.
+  [[nodiscard]] double total() const noexcept { return total_ + static_cast<double>(usual_); }
+  using Masses = std::array<std::array<double, YBins>, XBins>;
+  void update_slowly(double x, double y) noexcept {
     if (!std::isfinite(x) || !std::isfinite(y)) {
       ++not_finite_;
       return;
@@ -58,43 +107,6 @@ class JointHistogram {
       masses_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] += w;
     }
   }
-
-  /// Adds another histogram's samples. kMismatch when bins or memories differ.
-  Result<std::uint64_t> merge(const JointHistogram& other) noexcept {
-    if (!x_.same_bins(other.x_) || !y_.same_bins(other.y_) ||
-        weight_.growth() != other.weight_.growth()) {
-      return Errc::kMismatch;
-    }
-    const double factor = weight_.value() / other.weight_.value();
-    for (std::size_t i = 0; i < XBins; ++i) {
-      for (std::size_t j = 0; j < YBins; ++j) masses_[i][j] += factor * other.masses_[i][j];
-    }
-    total_ += factor * other.total_;
-    outside_ += factor * other.outside_;
-    samples_ += other.samples_;
-    not_finite_ += other.not_finite_;
-    return samples_;
-  }
-
-  [[nodiscard]] const XAxis& x_axis() const noexcept { return x_; }
-  [[nodiscard]] const YAxis& y_axis() const noexcept { return y_; }
-  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
-  [[nodiscard]] std::uint64_t not_finite() const noexcept { return not_finite_; }
-
-  /// Share of the mass in a cell and outside all cells: together 1 (0 without samples).
-  [[nodiscard]] double share(std::size_t i, std::size_t j) const noexcept {
-    return total_ > 0.0 ? masses_[i][j] / total_ : 0.0;
-  }
-  [[nodiscard]] double share_outside() const noexcept {
-    return total_ > 0.0 ? outside_ / total_ : 0.0;
-  }
-  /// Probability per unit of x and of y. Its integral and share_outside() make 1.
-  [[nodiscard]] double density(std::size_t i, std::size_t j) const noexcept {
-    return share(i, j) / (x_.width() * y_.width());
-  }
-
- private:
-  using Masses = std::array<std::array<double, YBins>, XBins>;
   void fold_x() noexcept {
     Masses wide{};
     for (std::size_t i = 0; i < XBins; ++i) {
@@ -123,7 +135,8 @@ class JointHistogram {
   Masses masses_{};
   double total_{0.0};
   double outside_{0.0};
-  std::uint64_t samples_{0};
+  std::uint64_t usual_{0};    // samples of weight 1 within a range that is known
+  std::uint64_t samples_{0};  // all others
   std::uint64_t not_finite_{0};
 };
 

@@ -4,15 +4,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 
 namespace {
 constexpr std::size_t kWorthAPanel = 4;  // fewer rows cost less one by one
+
+DAMPLINE_WIDE void rotate(RowFactor& into, const GalerkinRow& row, int first) noexcept {
+  into.absorb(row, first);
+}
 }  // namespace
 
 void merge_step(ScaleFactors& into, const ScaleFactors& from, int cursor) noexcept {
   const auto scale = static_cast<std::size_t>(cursor / kRowColumns);
-  into.factor[scale].absorb_row_of(from.factor[scale], cursor % kRowColumns);
+  const int row = cursor % kRowColumns;
+  rotate(into.factor[scale], from.factor[scale].row(row), row);
 }
 
 void merge_counts(ScaleFactors& into, const ScaleFactors& from) noexcept {
@@ -41,7 +48,7 @@ void BlockStore::absorb(std::int64_t block, std::size_t scale, const GalerkinRow
   Panel& panel = panels_[scale];
   if (panel.count == kPanel || panel.slot != slot(block)) absorb_panel(scale);
   panel.slot = slot(block);
-  panel.rows[panel.count++] = row;
+  panel.rows.set(panel.count++, row);
   open_[panel.slot].rows[scale] += 1.0;
 }
 
@@ -49,9 +56,9 @@ void BlockStore::absorb_panel(std::size_t scale) noexcept {
   Panel& panel = panels_[scale];
   RowFactor& factor = open_[panel.slot].factor[scale];
   if (panel.count < kWorthAPanel) {
-    for (std::size_t i = 0; i < panel.count; ++i) factor.absorb(panel.rows[i]);
+    for (std::size_t i = 0; i < panel.count; ++i) factor.absorb(panel.rows.row(i));
   } else {
-    for (std::size_t i = panel.count; i < kPanel; ++i) panel.rows[i].setZero();
+    for (std::size_t i = panel.count; i < kPanel; ++i) panel.rows.clear(i);
     factor.absorb_panel(panel.rows);
   }
   panel.count = 0;
@@ -114,8 +121,14 @@ void BlockStore::advance() noexcept {
     const auto scale = static_cast<std::size_t>(cursor_ / kRowColumns);
     if (panels_[scale].slot == pending_[0]) absorb_panel(scale);
   }
-  merge_step(into, from, cursor_);
-  if (++cursor_ < kRowsOfBlock) return;
+  if (into.blocks == 0) {  // nothing to merge with
+    const auto scale = static_cast<std::size_t>(cursor_ / kRowColumns);
+    into.factor[scale] = from.factor[scale];
+    cursor_ += kRowColumns;
+  } else {
+    merge_step(into, from, cursor_++);
+  }
+  if (cursor_ < kRowsOfBlock) return;
   cursor_ = 0;
   merge_counts(into, from);
   if (phase_ == Phase::kIntoEntry) {

@@ -58,7 +58,7 @@ class BlockStore {
   static constexpr std::size_t kPanel = 8;
   /// Rows of one scale and block that are not yet in the block's factor.
   struct Panel {
-    std::array<GalerkinRow, kPanel> rows{};
+    RowFactor::Panel<kPanel> rows{};
     std::size_t count{0};
     std::size_t slot{0};
   };

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 
 /// Square-root information of a least-squares problem: the upper-triangular factor R of [A | b],
@@ -17,6 +19,10 @@ namespace dampline {
 template <int Columns, class Scalar = double>
 class Information {
   static_assert(Columns >= 2);
+
+  static constexpr int kVector = 4;
+  /// Of a panel's rows: a vector that begins within the columns ends within the stride.
+  static constexpr auto kStride = static_cast<std::size_t>(Columns + kVector - 1);
 
  public:
   static constexpr int kColumns = Columns;
@@ -41,19 +47,42 @@ class Information {
     }
   }
 
+  /// Rows that are added together, with a margin that whole vectors may reach into.
+  template <std::size_t Rows>
+  class Panel {
+   public:
+    static constexpr std::size_t kRows = Rows;
+    void set(std::size_t i, const Row& row) noexcept {
+      clear(i);
+      for (int j = 0; j < Columns; ++j) at(i)[j] = row[j];
+    }
+    [[nodiscard]] Row row(std::size_t i) const noexcept { return Row::Map(&numbers_[i * kStride]); }
+    void scale(std::size_t i, Scalar factor) noexcept {
+      for (std::size_t j = 0; j < kStride; ++j) at(i)[j] *= factor;
+    }
+    void clear(std::size_t i) noexcept {
+      for (std::size_t j = 0; j < kStride; ++j) at(i)[j] = Scalar(0);
+    }
+
+   private:
+    friend class Information;
+    [[nodiscard]] Scalar* at(std::size_t i) noexcept { return &numbers_[i * kStride]; }
+    std::array<Scalar, Rows * kStride> numbers_{};
+  };
+
   /// Adds several equations at once, with one Householder reflection for each column (Golub and Van
   /// Loan, 5.1.3): one square root for all of them, where absorb() needs one each. About
   /// 2 Columns^2 operations for each equation.
   template <std::size_t Rows>
-  void absorb_panel(std::array<Row, Rows>& rows) noexcept {
+  DAMPLINE_WIDE void absorb_panel(Panel<Rows>& panel) noexcept {
     for (int i = 0; i < Columns; ++i) {
       Scalar* r = factor_.data() + offset(i);
       Scalar square = 0;
-      for (const Row& row : rows) square += row[i] * row[i];
+      for (std::size_t m = 0; m < Rows; ++m) square += panel.at(m)[i] * panel.at(m)[i];
       if (square <= kLeastSquare) continue;  // too small to have a direction
       const Scalar norm = std::sqrt(r[0] * r[0] + square);
       const Scalar sum = r[0] + norm;
-      reflect(rows, i, r, -square / sum, Scalar(1) / norm, -sum / (norm * square));
+      reflect(panel, i, r, -square / sum, Scalar(1) / norm, -sum / (norm * square));
       r[0] = norm;
     }
   }
@@ -157,25 +186,48 @@ class Information {
     }
   }
 
-  // The columns after i of the factor's row `r` and of `rows`, reflected at v = (first,
-  // rows[.][i]), where first = r - |r|, formed without cancellation: x + v (v'x) / (|r| first).
+  // The columns after i of the factor's row `r` and of the panel, reflected at v = (first,
+  // panel[.][i]), where first = r - |r|, formed without cancellation: x + v (v'x) / (|r| first). By
+  // whole vectors: of the last one, what lies beyond the row is put back, or in the margin.
   template <std::size_t Rows>
-  static void reflect(std::array<Row, Rows>& rows, int i, Scalar* __restrict r, Scalar first,
+  static void reflect(Panel<Rows>& panel, int i, Scalar* __restrict r, Scalar first,
                       Scalar per_norm, Scalar per_both) noexcept {
     std::array<Scalar, Rows> v{};
-    for (std::size_t m = 0; m < Rows; ++m) v[m] = rows[m][i];
-    Scalar* __restrict below = rows[0].data();
-    for (int j = i + 1; j < Columns; ++j) {
-      Scalar along = first * r[j - i];
-      for (std::size_t m = 0; m < Rows; ++m) along += v[m] * below[m * kStride + at_column(j)];
-      r[j - i] += along * per_norm;
+    for (std::size_t m = 0; m < Rows; ++m) v[m] = panel.at(m)[i];
+    Scalar* __restrict upper = r + 1;
+    Scalar* __restrict below = panel.at(0) + i + 1;
+    const int count = Columns - i - 1;
+    const auto one = [&](int j) {
+      Scalar along = first * upper[j];
+      for (std::size_t m = 0; m < Rows; ++m) along += v[m] * below[m * kStride + place(j)];
+      upper[j] += along * per_norm;
       along *= per_both;
-      for (std::size_t m = 0; m < Rows; ++m) below[m * kStride + at_column(j)] += v[m] * along;
+      for (std::size_t m = 0; m < Rows; ++m) below[m * kStride + place(j)] += v[m] * along;
+    };
+    const auto vector = [&](int j) {
+      Four along = first * four(upper + j).numbers;
+      for (std::size_t m = 0; m < Rows; ++m) along += v[m] * four(below + j + m * kStride).numbers;
+      four(upper + j).numbers += along * per_norm;
+      along *= per_both;
+      for (std::size_t m = 0; m < Rows; ++m) four(below + j + m * kStride).numbers += v[m] * along;
+    };
+    if (count < kVector) {
+      for (int j = 0; j < count; ++j) one(j);
+      return;
     }
+    const Four beyond = four(upper + count).numbers;
+    for (int j = 0; j < count; j += kVector) vector(j);
+    four(upper + count).numbers = beyond;
   }
-  static constexpr std::size_t kStride = sizeof(Row) / sizeof(Scalar);
-  static constexpr std::size_t at_column(int j) noexcept { return static_cast<std::size_t>(j); }
-
+  using Four [[gnu::vector_size(kVector * sizeof(Scalar))]] = Scalar;
+  /// Four neighbours in memory, aligned as one of them is.
+  struct [[gnu::packed, gnu::aligned(alignof(Scalar)), gnu::may_alias]] FourInMemory {
+    Four numbers;
+  };
+  static FourInMemory& four(Scalar* numbers) noexcept {
+    return *reinterpret_cast<FourInMemory*>(numbers);
+  }
+  static constexpr std::size_t place(int j) noexcept { return static_cast<std::size_t>(j); }
   static constexpr std::size_t offset(int i) noexcept {
     return static_cast<std::size_t>(i * Columns - i * (i - 1) / 2);
   }

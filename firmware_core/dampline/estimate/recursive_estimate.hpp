@@ -26,7 +26,7 @@ class RecursiveEstimate {
 
   void absorb(const typename Factor::Row& row) noexcept {
     rows_ = keep_ * rows_ + 1.0;
-    waiting_[count_] = row;
+    waiting_.set(count_, row);
     if (++count_ < kPanel) return;
     fade();
     factor_.absorb_panel(waiting_);
@@ -39,7 +39,7 @@ class RecursiveEstimate {
   [[nodiscard]] const LinearEstimate<Unknowns, Scalar>& latest() const noexcept { return latest_; }
   [[nodiscard]] const Factor& information() noexcept {
     fade();
-    for (std::size_t i = 0; i < count_; ++i) factor_.absorb(waiting_[i]);
+    for (std::size_t i = 0; i < count_; ++i) factor_.absorb(waiting_.row(i));
     count_ = 0;
     return factor_;
   }
@@ -50,13 +50,13 @@ class RecursiveEstimate {
   void fade() noexcept {
     if (!(keep_ < 1.0) || count_ == 0) return;
     factor_.scale(fade_[count_]);
-    for (std::size_t i = 0; i + 1 < count_; ++i) waiting_[i] *= fade_[count_ - 1 - i];
+    for (std::size_t i = 0; i + 1 < count_; ++i) waiting_.scale(i, fade_[count_ - 1 - i]);
   }
 
   double keep_;
   Sufficiency enough_;
   std::array<Scalar, kPanel + 1> fade_{Scalar(1)};
-  std::array<typename Factor::Row, kPanel> waiting_{};
+  typename Factor::template Panel<kPanel> waiting_{};
   std::size_t count_{0};
   Factor factor_{};
   double rows_{0.0};

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/motion/baseline.hpp"
 
+#include <algorithm>
+
+#include "dampline/motion/wide_dot.hpp"
+#include "dampline/wide.hpp"
+
 namespace dampline {
 namespace {
 
@@ -45,9 +50,12 @@ Baseline::Baseline(int decimation) noexcept
 
 void Baseline::low_rate_step(std::int64_t instant) noexcept {
   const std::int64_t start = instant * decimation_ - box_half_;
-  double sum = 0.0;
-  for (int i = 0; i <= 2 * box_half_; ++i) sum += box_[static_cast<std::size_t>(i)] * at(start + i);
-  low_[static_cast<std::size_t>(instant) & 31U] = sum;
+  const auto length = static_cast<std::size_t>(2 * box_half_ + 1);
+  const std::size_t from = static_cast<std::size_t>(start) & (kRing - 1);
+  const std::size_t before_end = std::min(length, kRing - from);
+  low_[static_cast<std::size_t>(instant) & 31U] =
+      wide_dot(box_.data(), &ring_[from], before_end) +
+      wide_dot(box_.data() + before_end, ring_.data(), length - before_end);
   const std::int64_t centre = instant - kTapsHalf;
   if (centre < kFirstBox + kTapsHalf) return;
   const auto& taps = kTaps[static_cast<std::size_t>(corner_)];
@@ -59,7 +67,7 @@ void Baseline::low_rate_step(std::int64_t instant) noexcept {
   coefficients_[static_cast<std::size_t>(centre) & 7U] = c;
 }
 
-bool Baseline::update(double x, double& out) noexcept {
+DAMPLINE_WIDE bool Baseline::update(double x, double& out) noexcept {
   const std::int64_t n = count_++;
   ring_[static_cast<std::size_t>(n) & (kRing - 1)] = x;
   if (n == next_box_) {

@@ -18,10 +18,12 @@ class ShortIntegral {
 
   /// Takes x_n; returns V_(n-4). Meaningful once kPoints values were given.
   constexpr double update(double x) noexcept {
-    for (std::size_t i = 0; i + 1 < kPoints; ++i) x_[i] = x_[i + 1];
-    x_[kPoints - 1] = x;
+    x_[next_] = x_[next_ + kPoints] = x;
+    if (++next_ == kPoints) next_ = 0;
+    const double* oldest = &x_[next_];
     double sum = 0.0;
-    for (std::size_t j = 0; j < kWeights.size(); ++j) sum += kWeights[j] * (x_[5 + j] + x_[4 - j]);
+    for (std::size_t j = 0; j < kWeights.size(); ++j)
+      sum += kWeights[j] * (oldest[5 + j] + oldest[4 - j]);
     integral_ += step_s_ * sum;
     return integral_;
   }
@@ -39,7 +41,9 @@ class ShortIntegral {
                                                   .00581527};
   double step_s_;
   double integral_{0.0};
-  std::array<double, kPoints> x_{};
+  std::array<double, std::size_t{2} * kPoints>
+      x_{};  // each twice, so that nothing is shifted along
+  std::size_t next_{0};
 };
 
 }  // namespace dampline

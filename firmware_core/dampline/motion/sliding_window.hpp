@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
+
+#include "dampline/motion/wide_dot.hpp"
 
 namespace dampline {
 
@@ -16,20 +17,9 @@ class SlidingWindow {
     if (++next_ == Size) next_ = 0;
   }
 
-  /// Sum of weights[i] x_i, i counted from the oldest; two by two.
+  /// Sum of weights[i] x_i, i counted from the oldest; in four lanes.
   [[nodiscard]] double dot(const std::array<double, Size>& weights) const noexcept {
-    using Pair = Eigen::Array2d;
-    const double* x = values_.data() + next_;
-    Pair even = Pair::Zero();
-    Pair odd = Pair::Zero();
-    std::size_t i = 0;
-    for (; i + 3 < Size; i += 4) {
-      even += Pair::Map(&weights[i]) * Pair::Map(x + i);
-      odd += Pair::Map(&weights[i + 2]) * Pair::Map(x + i + 2);
-    }
-    double rest = 0.0;
-    for (; i < Size; ++i) rest += weights[i] * x[i];
-    return (even + odd).sum() + rest;
+    return wide_dot(weights.data(), values_.data() + next_, Size);
   }
 
  private:

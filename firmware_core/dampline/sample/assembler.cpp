@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 
 Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) noexcept {
@@ -20,7 +22,7 @@ SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
              ChannelLane{config.channels[2], config.sample_rate_hz}},
       meter_{config.sample_rate_hz} {}
 
-void SampleAssembler::push(const CanFrame& frame) noexcept {
+DAMPLINE_WIDE void SampleAssembler::push(const CanFrame& frame) noexcept {
   ++counts_.frames;
   if (frame.error) {
     ++counts_.error;
@@ -48,7 +50,9 @@ void SampleAssembler::flush() noexcept {
 }
 
 bool SampleAssembler::paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept {
-  if (!lane.started()) return false;
+  // Nearly always: a line's tick is the lane's newest, or a few ahead of it.
+  if (!lane.started() || lane.line().is_near(time_ns, 0.5 * static_cast<double>(kPauseTicks)))
+    return false;
   return lane.line().tick_at(time_ns) - static_cast<double>(lane.newest()) >
          static_cast<double>(kPauseTicks);
 }
@@ -95,9 +99,12 @@ const Reading* SampleAssembler::find(std::size_t channel, std::int64_t tick) con
   return lanes_[channel].find(tick + lane_offset_[channel]);
 }
 
-int SampleAssembler::present(std::int64_t tick) const noexcept {
+int SampleAssembler::find_all(std::int64_t tick, Readings& readings) const noexcept {
   int channels = 0;
-  for (std::size_t c = 0; c < kChannels; ++c) channels += find(c, tick) != nullptr ? 1 : 0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    readings[c] = find(c, tick);
+    channels += readings[c] != nullptr ? 1 : 0;
+  }
   return channels;
 }
 
@@ -108,35 +115,45 @@ std::int64_t SampleAssembler::newest() const noexcept {
   return tick;
 }
 
+std::int64_t SampleAssembler::oldest_lane() const noexcept {
+  std::int64_t tick = lanes_[0].newest() - lane_offset_[0];
+  for (std::size_t c = 1; c < kChannels; ++c)
+    tick = std::min(tick, lanes_[c].newest() - lane_offset_[c]);
+  return tick;
+}
+
 void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
   const std::int64_t last = newest();
+  if (oldest_lane() < next_tick_ && last - next_tick_ < wait_ticks) return;  // a channel is to come
   // Two stretches at most can hold readings: the one before a jump, and the one that ends now.
   for (int stretch = 0; stretch < 2; ++stretch) {
     const std::int64_t end = std::min(last, next_tick_ + kLaneSpan);
     while (next_tick_ <= end) {
-      const int channels = present(next_tick_);
+      Readings readings;
+      const int channels = find_all(next_tick_, readings);
       if (channels < static_cast<int>(kChannels) && last - next_tick_ < wait_ticks) return;
       if (channels == static_cast<int>(kChannels)) {
-        emit();
+        emit(readings);
       } else if (channels > 0) {
         ++counts_.incomplete;
       }
       ++next_tick_;
     }
+    if (next_tick_ > last) return;
     next_tick_ = std::max(next_tick_, last - kLaneSpan);
   }
 }
 
-void SampleAssembler::emit() noexcept {
+void SampleAssembler::emit(const Readings& readings) noexcept {
   Sample sample;
   sample.tick = next_tick_;
   for (std::size_t c = 0; c < kChannels; ++c) {
-    const Reading& reading = *find(c, next_tick_);
+    const Reading& reading = *readings[c];
     sample.accel_mps2[c] = reading.accel_mps2;
-    if (reading.saturated)
-      sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
-    if (c == 0) sample.time_ns = reading.time_ns;
+    sample.saturated =
+        static_cast<std::uint8_t>(sample.saturated | (unsigned{reading.saturated} << c));
   }
+  sample.time_ns = readings[0]->time_ns;
   if (ready_count_ == kReady) {
     ++counts_.overflow;
     return;

@@ -61,13 +61,17 @@ class SampleAssembler {
   static constexpr std::int64_t kLaneSpan = ChannelLane::kKept;
   static constexpr std::size_t kReady = 128;
 
+  using Readings = std::array<const Reading*, kChannels>;
   void align() noexcept;
   void settle(std::int64_t wait_ticks) noexcept;
-  void emit() noexcept;
+  void emit(const Readings& readings) noexcept;
   void restart(std::int64_t time_ns) noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
-  [[nodiscard]] int present(std::int64_t tick) const noexcept;
+  /// How many channels have the tick; null for the others.
+  int find_all(std::int64_t tick, Readings& readings) const noexcept;
   [[nodiscard]] std::int64_t newest() const noexcept;
+  /// The newest tick of the channel that is behind the others.
+  [[nodiscard]] std::int64_t oldest_lane() const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 

@@ -5,13 +5,6 @@
 #include <limits>
 
 namespace dampline {
-namespace {
-constexpr std::size_t slot_of(std::int64_t tick) noexcept {
-  static_assert(ChannelLane::kKept == 64);
-  return static_cast<std::size_t>(static_cast<std::uint64_t>(tick) % 64U);
-}
-}  // namespace
-
 ChannelLane::ChannelLane(const ChannelConfig& config, double rate_hz) noexcept
     : config_{config},
       accel_{config.accel},
@@ -36,70 +29,6 @@ void ChannelLane::restart(std::int64_t first_tick) noexcept {
   since_start_ = 0;
 }
 
-bool ChannelLane::decode(const CanFrame& frame, Reading& reading, std::uint64_t& counter) noexcept {
-  if (config_.multiplexed) {
-    if (!multiplexor_.fits(frame)) {
-      ++counts_.wrong_length;
-      return false;
-    }
-    if (multiplexor_.bits(frame) != config_.multiplexor_value) {
-      ++counts_.other_page;
-      return false;
-    }
-  }
-  if (!accel_.fits(frame) || (config_.has_counter && !counter_.fits(frame))) {
-    ++counts_.wrong_length;
-    return false;
-  }
-  const std::int64_t raw = accel_.raw(frame);
-  reading.time_ns = frame.time_ns;
-  reading.accel_mps2 = accel_.physical(raw);
-  reading.saturated = full_scale_.reached(raw);
-  if (config_.has_counter) counter = counter_.bits(frame);
-  return true;
-}
-
-void ChannelLane::push(const CanFrame& frame) noexcept {
-  if (frame.remote) {
-    ++counts_.not_data;
-    return;
-  }
-  Reading reading;
-  std::uint64_t counter = 0;
-  if (!decode(frame, reading, counter)) return;
-  if (since_start_ == 0) {
-    by_counter_.start(first_tick_, counter, reading.time_ns);
-    by_time_.start(first_tick_, reading.time_ns);
-    reading.tick = first_tick_;
-    store_next(reading);
-  } else if (config_.has_counter) {
-    number_by_counter(reading, counter);
-  } else {
-    number_by_time(reading);
-  }
-}
-
-void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noexcept {
-  const Placement placed = by_counter_.place(counter, reading.time_ns);
-  reading.tick = placed.tick;
-  if (placed.streak <= 1) suspects_ = 0;
-  switch (placed.place) {
-    case Place::kRealigned:
-      ++counts_.realigned;
-      counts_.misjudged += suspects_;
-      [[fallthrough]];
-    case Place::kNext:
-      store_next(reading);
-      break;
-    case Place::kBehind:
-      store_late(reading);
-      break;
-    case Place::kOutOfStep:
-      ++counts_.out_of_step;
-      break;
-  }
-}
-
 void ChannelLane::number_by_time(const Reading& reading) noexcept {
   if (!by_time_.push(reading)) ++counts_.repeated;
   take_released();
@@ -112,19 +41,6 @@ void ChannelLane::take_released() noexcept {
 void ChannelLane::flush() noexcept {
   by_time_.flush();
   take_released();
-}
-
-void ChannelLane::store_next(const Reading& reading) noexcept {
-  const std::int64_t step = since_start_ == 0 ? 1 : reading.tick - newest_;
-  if (step > 1) {
-    ++counts_.gaps;
-    counts_.lost += static_cast<std::uint64_t>(step - 1);
-  }
-  kept_[slot_of(reading.tick)] = reading;
-  newest_ = reading.tick;
-  ++since_start_;
-  ++counts_.readings;
-  if (reading.saturated) ++counts_.saturated;
 }
 
 void ChannelLane::store_late(const Reading& reading) noexcept {
@@ -142,11 +58,6 @@ void ChannelLane::store_late(const Reading& reading) noexcept {
   kept_[slot_of(reading.tick)] = reading;
   ++counts_.readings;
   if (reading.saturated) ++counts_.saturated;
-}
-
-const Reading* ChannelLane::find(std::int64_t tick) const noexcept {
-  const Reading& reading = kept_[slot_of(tick)];
-  return reading.tick == tick ? &reading : nullptr;
 }
 
 std::int64_t ChannelLane::oldest() const noexcept {

@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace dampline {
 namespace {
 constexpr int kConfirmingFrames = 4;
-// Frames delivered in a burst may be this late and still be numbered by their counter.
-constexpr double kBurstTicks = 32.0;
 constexpr double kPeriodRange = 0.5;
 }  // namespace
 
@@ -25,38 +22,6 @@ void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
   newest_ = tick;
   newest_counter_ = counter;
   streak_ = 0;
-}
-
-std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
-  const std::uint64_t ahead = (counter - newest_counter_) & mask_;
-  const double due_ahead = due_tick - static_cast<double>(newest_);
-  if (ahead == 1 && std::abs(due_ahead - 1.0) < 0.49 * wrap_) return newest_ + 1;  // the usual one
-  const double wraps = std::nearbyint((due_ahead - static_cast<double>(ahead)) / wrap_);
-  // Modulo 2^64 on purpose: a counter of 64 bits that goes back one wraps to a step of -1.
-  const std::uint64_t step =
-      ahead + (mask_ + 1) * static_cast<std::uint64_t>(static_cast<std::int64_t>(wraps));
-  return newest_ + static_cast<std::int64_t>(step);
-}
-
-bool CounterSequence::fits(std::int64_t tick, double due_tick) const noexcept {
-  const double off = std::abs(due_tick - static_cast<double>(tick));
-  if (tick == newest_ + 1) return off <= kBurstTicks;
-  return tick > newest_ && off <= tolerance_;
-}
-
-Placement CounterSequence::place(std::uint64_t counter, std::int64_t time_ns) noexcept {
-  const double due_tick = line_.tick_at(time_ns);
-  const std::int64_t tick = resolve(counter, due_tick);
-  if (fits(tick, due_tick)) return accept(Place::kNext, tick, counter, time_ns);
-  return suspect(tick, counter, time_ns);
-}
-
-Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t counter,
-                                  std::int64_t time_ns) noexcept {
-  line_.update(tick, time_ns);
-  newest_ = tick;
-  newest_counter_ = counter;
-  return {place, tick, std::exchange(streak_, 0)};
 }
 
 bool CounterSequence::continues_streak(std::uint64_t counter) const noexcept {

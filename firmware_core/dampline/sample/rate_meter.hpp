@@ -37,4 +37,26 @@ class RateMeter {
   std::uint64_t segments_{0};
 };
 
+inline void RateMeter::update(std::int64_t tick, std::int64_t time_ns) noexcept {
+  if (count_ == 0.0) {
+    first_tick_ = tick;
+    first_time_ns_ = time_ns;
+    mean_ticks_ = mean_deviation_ns_ = 0.0;
+    ++segments_;
+  }
+  const auto ticks = static_cast<double>(tick - first_tick_);
+  const double deviation_ns =
+      static_cast<double>(time_ns - first_time_ns_) - ticks * nominal_period_ns_;
+  // Welford, "Note on a method for calculating corrected sums of squares and products", 1962.
+  count_ += 1.0;
+  ++samples_;
+  const double ticks_off = ticks - mean_ticks_;
+  const double deviation_off = deviation_ns - mean_deviation_ns_;
+  mean_ticks_ += ticks_off / count_;
+  mean_deviation_ns_ += deviation_off / count_;
+  sum_tt_ += ticks_off * (ticks - mean_ticks_);
+  sum_td_ += ticks_off * (deviation_ns - mean_deviation_ns_);
+  sum_dd_ += deviation_off * (deviation_ns - mean_deviation_ns_);
+}
+
 }  // namespace dampline

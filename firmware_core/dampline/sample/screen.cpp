@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dampline/wide.hpp"
+
 namespace dampline {
 namespace {
 constexpr double kStepsMoved = 8.0;
@@ -33,12 +35,15 @@ const SampleScreen::Held& SampleScreen::held(std::size_t age) const noexcept {
   return ring_[(newest_ + kCapacity - age) % kCapacity];
 }
 
-bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
+DAMPLINE_WIDE bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
   newest_ = (newest_ + 1) % kCapacity;
   ring_[newest_] = Held{sample, {}};
   ++count_;
+  const bool paused =
+      count_ > 1 && sample.tick - held(1).sample.tick > static_cast<std::int64_t>(window_);
   for (std::size_t c = 0; c < kChannels; ++c) {
-    follow(c, sample);
+    follow(runs_[c], sample.accel_mps2[c], sample.tick, paused);
+    if (config_.find_flat_tops) follow_extremes(runs_[c], sample.accel_mps2[c]);
     if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
     if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
   }
@@ -79,19 +84,18 @@ void SampleScreen::mark(std::size_t channel, std::int64_t samples, Verdict verdi
 }
 
 // Lost samples do not end a run: a stuck channel stays stuck. A pause does.
-void SampleScreen::follow(std::size_t channel, const Sample& sample) noexcept {
-  Run& run = runs_[channel];
-  const double value = sample.accel_mps2[channel];
-  const bool paused =
-      count_ > 1 && sample.tick - held(1).sample.tick > static_cast<std::int64_t>(window_);
+void SampleScreen::follow(Run& run, double value, std::int64_t tick, bool paused) noexcept {
   if (run.samples > 0 && !paused && value == run.value) {
     ++run.samples;
-  } else {
-    run.value = value;
-    run.first_tick = sample.tick;
-    run.samples = 1;
-    run.stuck = false;
+    return;
   }
+  run.value = value;
+  run.first_tick = tick;
+  run.samples = 1;
+  run.stuck = false;
+}
+
+void SampleScreen::follow_extremes(Run& run, double value) noexcept {
   if (!std::isfinite(value)) return;
   run.count += 1.0;
   const double off = value - run.mean;

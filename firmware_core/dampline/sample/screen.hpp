@@ -50,12 +50,13 @@ class SampleScreen {
   [[nodiscard]] std::size_t delay() const noexcept { return window_ - 1; }
 
  private:
-  /// One channel's run of equal values, and what it has reached so far.
+  /// One channel's run of equal values.
   struct Run {
     double value{0.0};
     std::int64_t first_tick{0};
     std::int64_t samples{0};
     bool stuck{false};
+    // Where flat tops are looked for, what the channel has reached so far.
     double count{0.0};  // of finite values, their mean and sum of squares about it
     double mean{0.0};
     double sum_squares{0.0};
@@ -70,7 +71,8 @@ class SampleScreen {
   };
 
   void mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept;
-  void follow(std::size_t channel, const Sample& sample) noexcept;
+  static void follow(Run& run, double value, std::int64_t tick, bool paused) noexcept;
+  static void follow_extremes(Run& run, double value) noexcept;
   void judge_stuck(std::size_t channel) noexcept;
   void judge_flat_top(std::size_t channel) noexcept;
   [[nodiscard]] bool holds(std::size_t channel) const noexcept;  // one value for the whole window

@@ -16,23 +16,7 @@ class LawAverage {
   /// Takes velocity and acceleration (dv/dt) at sample n; returns the averages at n - 1, meaningful
   /// from the third call after reset().
   Lanes update(const LawColumns& law, double velocity_mps, double accel_mps2,
-               double step_s) noexcept {
-    const double m0 = step_s * last_accel_mps2_;
-    const double m1 = step_s * accel_mps2;
-    const double v0 = last_velocity_mps_;
-    const double v1 = velocity_mps;
-    const Lanes p0 = law.lanes(v0);
-    // Hermite weights at u = 1/4, 1/2, 3/4: (h00, h10, h01, h11) of u.
-    const Lanes p1 = law.lanes((54.0 * v0 + 9.0 * m0 + 10.0 * v1 - 3.0 * m1) / 64.0);
-    const Lanes p2 = law.lanes((4.0 * (v0 + v1) + m0 - m1) / 8.0);
-    const Lanes p3 = law.lanes((10.0 * v0 + 3.0 * m0 + 54.0 * v1 - 9.0 * m1) / 64.0);
-    Lanes average = from_left_ + 0.25F * p0 + 0.1875F * p1 + 0.125F * p2 + 0.0625F * p3;
-    from_left_ = 0.0625F * p1 + 0.125F * p2 + 0.1875F * p3;
-    last_velocity_mps_ = velocity_mps;
-    last_accel_mps2_ = accel_mps2;
-    ++count_;
-    return average;
-  }
+               double step_s) noexcept;
 
   /// True when the value returned last was an average over both neighbours.
   [[nodiscard]] bool complete() const noexcept { return count_ >= 3; }

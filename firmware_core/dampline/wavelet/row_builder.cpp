@@ -2,8 +2,64 @@
 #include "dampline/wavelet/row_builder.hpp"
 
 #include <algorithm>
+#include <array>
+
+#include "dampline/wide.hpp"
 
 namespace dampline {
+namespace {
+
+constexpr auto kLanes = static_cast<std::size_t>(LawColumns::kLanes);
+
+/// sum += weight[i] (left[i] + right[-i]), lane by lane.
+DAMPLINE_WIDE void add_pairs(float* __restrict sum, const float* __restrict weight,
+                             const float* __restrict left, const float* __restrict right,
+                             std::size_t count) noexcept {
+  std::array<float, kLanes> own{};
+  for (std::size_t l = 0; l < kLanes; ++l) own[l] = sum[l];
+  for (; count > 0; --count, ++weight, left += kLanes, right -= kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) own[l] += *weight * (left[l] + right[l]);
+  for (std::size_t l = 0; l < kLanes; ++l) sum[l] = own[l];
+}
+
+/// Sums in four lanes: sample i goes to lane i % 4.
+using Lanes = std::array<double, 4>;
+struct LinearSums {
+  Lanes target{};
+  Lanes stiffness{};
+  Lanes viscous{};
+};
+struct LinearWeights {
+  const double* psi;
+  const double* psi1;
+  const double* double_integral;
+};
+
+DAMPLINE_WIDE void add_linear(LinearSums& sums, const LinearWeights& weights, const double* frame,
+                              const double* relative, std::size_t count) noexcept {
+  Wide target = wide(sums.target.data()).numbers;
+  Wide stiffness = wide(sums.stiffness.data()).numbers;
+  Wide viscous = wide(sums.viscous.data()).numbers;
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const Wide r = wide(relative + i).numbers;
+    target += wide(weights.psi + i).numbers * wide(frame + i).numbers;
+    stiffness += wide(weights.double_integral + i).numbers * r;
+    viscous += wide(weights.psi1 + i).numbers * r;
+  }
+  wide(sums.target.data()).numbers = target;
+  wide(sums.stiffness.data()).numbers = stiffness;
+  wide(sums.viscous.data()).numbers = viscous;
+  for (std::size_t l = 0; i < count; ++i, ++l) {
+    sums.target[l] += weights.psi[i] * frame[i];
+    sums.stiffness[l] += weights.double_integral[i] * relative[i];
+    sums.viscous[l] += weights.psi1[i] * relative[i];
+  }
+}
+
+double sum_of(const Lanes& lanes) noexcept { return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]); }
+
+}  // namespace
 
 GalerkinRow RowBuilder::row(std::size_t scale, std::int64_t n) const noexcept {
   GalerkinRow row;
@@ -14,48 +70,35 @@ GalerkinRow RowBuilder::row(std::size_t scale, std::int64_t n) const noexcept {
 
 LawColumns::Lanes RowBuilder::law_columns(std::size_t scale, std::int64_t n) const noexcept {
   const int half = bank_.half(scale);
-  const double* psi = bank_.psi(scale).data();
+  const float* psi = bank_.half_psi(scale);
   std::size_t left = law(n - half);
   std::size_t right = law(n + half);
   LawColumns::Lanes sum = LawColumns::Lanes::Zero();
   for (auto pairs = static_cast<std::size_t>(half); pairs > 0;) {
     const std::size_t stretch = std::min({pairs, kLawRing - left, right + 1});
-    for (std::size_t i = 0; i < stretch; ++i)
-      sum += static_cast<float>(psi[i]) * (law_[left + i] + law_[right - i]);
+    add_pairs(sum.data(), psi, law_[left].data(), law_[right].data(), stretch);
     pairs -= stretch;
     psi += stretch;
     left = (left + stretch) % kLawRing;
     right = (right + kLawRing - stretch) % kLawRing;
   }
-  return sum + static_cast<float>(*psi) * law_[left];
+  return sum + *psi * law_[left];
 }
 
 Eigen::Vector3d RowBuilder::linear_columns(std::size_t scale, std::int64_t n) const noexcept {
-  const auto psi = bank_.lumped_psi(scale);
-  const auto psi1 = bank_.lumped_psi1(scale);
-  const auto double_integral = bank_.lumped_double_integral(scale);
-  using Pair = Eigen::Array2d;  // two samples at a time
-  Pair target = Pair::Zero();
-  Pair stiffness = Pair::Zero();
-  Pair viscous = Pair::Zero();
+  const std::size_t taps = bank_.lumped_psi(scale).size();
+  const double* psi = bank_.lumped_psi(scale).data();
+  const double* psi1 = bank_.lumped_psi1(scale).data();
+  const double* double_integral = bank_.lumped_double_integral(scale).data();
+  LinearSums sums{};
   std::size_t at = raw(n - bank_.half(scale) - 1);
-  for (std::size_t first = 0; first < psi.size(); at = 0) {
-    const std::size_t stretch = std::min(psi.size() - first, kRawRing - at);
-    std::size_t i = 0;
-    for (; i + 1 < stretch; i += 2) {
-      const Pair relative = Pair::Map(&relative_mps2_[at + i]);
-      target -= Pair::Map(&psi[first + i]) * Pair::Map(&frame_mps2_[at + i]);
-      stiffness += Pair::Map(&double_integral[first + i]) * relative;
-      viscous -= Pair::Map(&psi1[first + i]) * relative;
-    }
-    if (i < stretch) {
-      target[0] -= psi[first + i] * frame_mps2_[at + i];
-      stiffness[0] += double_integral[first + i] * relative_mps2_[at + i];
-      viscous[0] -= psi1[first + i] * relative_mps2_[at + i];
-    }
+  for (std::size_t first = 0; first < taps; at = 0) {
+    const std::size_t stretch = std::min(taps - first, kRawRing - at);
+    add_linear(sums, {psi + first, psi1 + first, double_integral + first}, &frame_mps2_[at],
+               &relative_mps2_[at], stretch);
     first += stretch;
   }
-  return {stiffness.sum(), viscous.sum(), target.sum()};
+  return {sum_of(sums.stiffness), -sum_of(sums.viscous), -sum_of(sums.target)};
 }
 
 double RowBuilder::still_share(std::size_t scale, std::int64_t n) const noexcept {

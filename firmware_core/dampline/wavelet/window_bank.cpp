@@ -70,6 +70,10 @@ void WindowBank::fill(Window& window, double step_s) noexcept {
     lumped_psi1_[i] = norm * tau_s * lump(l.third, c.third, r.third);
     lumped_double_integral_[i] = norm * tau_s * tau_s * lump(l.second, c.second, r.second);
   }
+  const std::span<const double> half =
+      std::span{psi_}.subspan(window.start + 1, static_cast<std::size_t>(window.half) + 1);
+  for (std::size_t i = 0; i < half.size(); ++i)
+    half_psi_[window.start / 2 + i] = static_cast<float>(half[i]);
 }
 
 }  // namespace dampline

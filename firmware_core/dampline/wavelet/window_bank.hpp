@@ -42,6 +42,10 @@ class WindowBank {
   [[nodiscard]] std::span<const double> psi(std::size_t scale) const noexcept {
     return std::span{psi_}.subspan(windows_[scale].start + 1, taps(scale));
   }
+  /// The same in single precision, from the end to the centre: psi is even.
+  [[nodiscard]] const float* half_psi(std::size_t scale) const noexcept {
+    return &half_psi_[windows_[scale].start / 2];
+  }
   /// Sum of |psi|.
   [[nodiscard]] double mass(std::size_t scale) const noexcept { return windows_[scale].mass; }
 
@@ -90,6 +94,7 @@ class WindowBank {
 
   std::array<Window, kScales> windows_{};
   Table psi_{};
+  std::array<float, kArena / 2> half_psi_{};
   Table lumped_psi_{};
   Table lumped_psi1_{};
   Table lumped_double_integral_{};
