@@ -16,7 +16,6 @@
 
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/truck_pass.hpp"
-#include "bench/true_model.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "drivers/candump/line_writer.hpp"
 #include "sim_hw/effects/registry.hpp"
@@ -133,7 +132,7 @@ struct DiagnosedRecord {
   std::vector<Planted> planted;
   double coulomb_n{0.0};
   double stiffness_npm{0.0};
-  double true_nmse{0.0};  ///< held out, by the true model; 0: none was fitted
+  std::optional<effect::Explanation> by_true_model;
   [[nodiscard]] bool names(std::size_t step, const std::string& effect) const {
     return step < explanation.step_count &&
            effect::name_of(explanation.step[step].chosen.effect) == effect;
@@ -156,65 +155,49 @@ inline void write_record(const sim::SimulationConfig& config, double length_s,
   std::ofstream{path}.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
-/// The size of the deflection that puts a true length on a point of its grid, near to `scale_m`.
-template <std::size_t N>
-double scale_with(const std::array<double, N>& grid, double truth_m, double scale_m) {
-  double best_m = truth_m / grid[0];
-  for (const double g : grid) {
-    if (std::abs(std::log(truth_m / g / scale_m)) < std::abs(std::log(best_m / scale_m)))
-      best_m = truth_m / g;
-  }
-  return best_m;
-}
-
-/// The scale with which the candidates of a planted effect hold the true one; 0: they have no
-/// lengths.
-inline double true_scale_m(const Planted& planted, double scale_m) {
-  if (planted.parameter == "bump_stop_gap")
-    return scale_with(effect::kBumpGap, planted.truth, scale_m);
+/// Grids whose points are all the true one of a planted effect.
+inline effect::Grids true_grids(const sim::SimulationConfig& config, const Planted& planted,
+                                double scale_m) {
+  const sim::TruckConfig& t = config.truck;
+  effect::Grids out;
+  out.scale_m = scale_m;
+  out.fine.fill(true);
+  for (std::size_t i = 0; i < effect::kStribeckSpeeds; ++i)
+    out.stribeck_mps[i] = t.damping.stribeck_speed_mps * std::exp2(static_cast<double>(i) - 1.0);
+  if (planted.parameter == "bump_stop_gap") out.bump_gap.fill(planted.truth / scale_m);
   if (planted.parameter == "presliding_hysteresis_distance")
-    return scale_with(effect::kDahlDistance, planted.truth, scale_m);
-  if (planted.parameter == "backlash_gap")
-    return scale_with(effect::kBacklashGap, planted.truth, scale_m);
-  return 0.0;
+    out.dahl_distance.fill(planted.truth / scale_m);
+  if (planted.parameter == "backlash_gap") out.backlash_gap.fill(planted.truth / scale_m);
+  const auto& modes = t.modes;
+  if (modes.pitch_inertia_kgm2 > 0.0) {
+    const double arm_m = modes.pitch_half_wheelbase_m;
+    const double hz =
+        arm_m * std::sqrt(2.0 * t.stiffness_npm / modes.pitch_inertia_kgm2) / (2.0 * M_PI);
+    const double friction_n = 0.5 * (t.friction_positive_n + t.friction_negative_n);
+    out.pitch.fill({hz, 0.5 * friction_n / t.stiffness_npm});
+  }
+  out.flexible.fill({modes.flexible_frequency_hz, modes.flexible_damping_ratio});
+  return out;
 }
 
-/// The law of a kind whose grid does not hold the true one, and whether there is one.
-inline std::optional<TrueLaw> true_law(const sim::SimulationConfig& config,
+/// The true model of a record: the base and the planted effect alone, with its true length, speed
+/// or frequency.
+inline effect::Explanation true_fit_of(const app::Config& settings,
+                                       const sim::SimulationConfig& config, const std::string& path,
                                        const Planted& planted) {
-  if (planted.effect == "stribeck")
-    return TrueLaw{config.truck.damping.stribeck_speed_mps, 0.0, 0.0};
-  if (planted.parameter == "unmodelled_mode_frequency")
-    return TrueLaw{0.0, planted.truth, config.truck.modes.flexible_damping_ratio};
-  return std::nullopt;
-}
-
-/// What the true model leaves of a record: the base and the planted effect alone, with its true
-/// length, speed or frequency in the place of the grid. Pitch of the frame stands on its grid.
-inline double true_nmse_of(const app::Config& settings, const sim::SimulationConfig& config,
-                           const std::string& path, const Planted& planted) {
-  const auto law = true_law(config, planted);
-  const auto sums = law ? std::make_unique<TrueSums>(sim::kSampleRateHz, *law) : nullptr;
-  app::TruckPass pass = app::pass_of(settings, {path, false}, {});
-  const double scale_m = true_scale_m(planted, pass.diagnosis->scale_m());
-  app::TruckPassOptions options{scale_m, false, {}};
-  if (sums)
-    options.watch = [&](const Sample&, const UpdateResult& result,
-                        const effect::Diagnosis& diagnosis) { sums->take(result, diagnosis); };
-  if (sums || scale_m > 0.0) pass = app::pass_of(settings, {path, false}, options);
+  const double scale_m = app::pass_of(settings, {path, false}, {}).diagnosis->scale_m();
+  const app::TruckPass pass =
+      app::pass_of(settings, {path, false}, {true_grids(config, planted, scale_m), {}, false, {}});
   effect::ExplainerConfig wanted;
   wanted.moving_mass_kg = settings.car.moving_mass_kg;
   for (std::size_t i = 0; i < effect::kEffects; ++i)
     wanted.allowed[i] = planted.effect == effect::name_of(static_cast<effect::Effect>(i));
-  const auto explainer = std::make_unique<effect::Explainer>();
-  const effect::GramStore& store = sums ? sums->finish() : pass.diagnosis->store();
-  return explainer->explain(store, pass.diagnosis->impulses(), pass.diagnosis->scale_m(), wanted)
-      .final.held_out_nmse;
+  return std::make_unique<effect::Explainer>()->explain(*pass.diagnosis, wanted);
 }
 
-/// What the base leaves of the same record as sound sensors would have seen it.
-inline double sound_nmse_of(const app::Config& settings, sim::SimulationConfig config,
-                            const std::string& path) {
+/// The base of the same record as sound sensors would have seen it.
+inline effect::Explanation sound_fit_of(const app::Config& settings, sim::SimulationConfig config,
+                                        const std::string& path) {
   config.sensors.time_skew_s = {};
   config.sensors.gain_error = {};
   write_record(config, 300.0, path);
@@ -222,17 +205,18 @@ inline double sound_nmse_of(const app::Config& settings, sim::SimulationConfig c
   effect::ExplainerConfig nothing;
   nothing.moving_mass_kg = settings.car.moving_mass_kg;
   nothing.allowed.fill(false);
-  const auto explainer = std::make_unique<effect::Explainer>();
-  return explainer->explain(*pass.diagnosis, nothing).final.held_out_nmse;
+  return std::make_unique<effect::Explainer>()->explain(*pass.diagnosis, nothing);
 }
 
-/// 0: impacts have no column, and of two effects none is looked at.
-inline double true_nmse(const app::Config& settings, const sim::SimulationConfig& config,
-                        const std::string& path, const std::vector<Planted>& planted) {
-  if (planted.size() != 1 || planted[0].effect == "impulsive_input") return 0.0;
+/// None: impacts have no column, and of two effects none is looked at.
+inline std::optional<effect::Explanation> true_fit(const app::Config& settings,
+                                                   const sim::SimulationConfig& config,
+                                                   const std::string& path,
+                                                   const std::vector<Planted>& planted) {
+  if (planted.size() != 1 || planted[0].effect == "impulsive_input") return std::nullopt;
   const bool sensor = planted[0].effect == "time_skew" || planted[0].effect == "gain_error";
-  return sensor ? sound_nmse_of(settings, config, path)
-                : true_nmse_of(settings, config, path, planted[0]);
+  return sensor ? sound_fit_of(settings, config, path)
+                : true_fit_of(settings, config, path, planted[0]);
 }
 
 /// As `dampline explain` does it: guards, floor and all.
@@ -252,7 +236,7 @@ inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted>
   settings.car.moving_mass_kg = config.truck.moving_mass_kg;
   const app::Explained found = app::explain_truck(settings, {{path, false}, {}, false});
   DiagnosedRecord out;
-  out.true_nmse = true_nmse(settings, config, path, planted);
+  out.by_true_model = true_fit(settings, config, path, planted);
   std::filesystem::remove(path);
   out.explanation = found.explanation;
   out.withheld = found.withheld;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/error.hpp"
+#include "app/explain/closer_look.hpp"
 #include "app/explain/second_look.hpp"
 #include "app/explain/truck_pass.hpp"
 #include "app/explain/truck_points.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 /// Predicts a record that took no part, and appends it to prediction.csv as the `number`-th.
 Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
-                   double scale_m, Explained& out, effect::Explainer& explainer) {
+                   Explained& out, effect::Explainer& explainer) {
   std::vector<PredictedRow>& rows = out.identified.evidence.prediction;
   const IdentifierConfig core = identifier_config(config);
   const auto keep = [&](const EvidencePoint& p) {
@@ -26,7 +27,7 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
                     std::numeric_limits<double>::quiet_NaN()});
   };
   TruckPoints points{core.sample_rate_hz, core.moving_mass_kg, out.explanation, {keep, {}}};
-  TruckPassOptions options{scale_m, false, {}};
+  TruckPassOptions options{out.explanation.grids, out.lateness, false, {}};
   options.watch = [&](const Sample& sample, const UpdateResult& result,
                       const effect::Diagnosis& diagnosis) {
     points.take(sample, result, diagnosis);
@@ -46,7 +47,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
     noise.take(sample);
   };
-  const TruckPass pass = pass_of(config, options.source, {0.0, options.show_progress, listen});
+  const TruckPass pass = pass_of(config, options.source, {{}, {}, options.show_progress, listen});
   Explained out;
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
@@ -54,11 +55,12 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   if (!judge_sums(config, *pass.diagnosis, *explainer, out))
     throw RunError{fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
                                options.source.path, pass.diagnosis->store().count())};
+  look_closer(config, options, pass, noise, *explainer, out);
   look_again(config, options, pass, noise, *explainer, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
-    out.validation.push_back(validate(config, {path, options.source.skip_bad_lines}, ++number,
-                                      pass.diagnosis->scale_m(), out, *explainer));
+    out.validation.push_back(
+        validate(config, {path, options.source.skip_bad_lines}, ++number, out, *explainer));
   out.inputs = pass.feed->extra_inputs();
   out.inputs.insert(out.inputs.begin(), describe_input(options.source.path, "record"));
   for (const std::string& path : options.validation)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "app/explain/alignment.hpp"
 #include "app/explain/signature.hpp"
 #include "app/identify/sample_feed.hpp"
 #include "app/run/checksum.hpp"
@@ -22,6 +23,7 @@ struct Validated {
 /// A truck record explained.
 struct Explained {
   effect::Explanation explanation;
+  LateChannel lateness;  ///< of a channel that was set right for the explanation
   bool withheld{false};  ///< faults of the data forbid to name an effect
   bool drifts{false};    ///< a parameter that changed explains more than any effect
   std::vector<Validated> validation;

@@ -23,13 +23,13 @@ bool within(int column, int first) {
 }
 
 /// A column in steady sliding at v without deflection, every history long over.
-double steady(int column, double v) {
+double steady(int column, const effect::Grids& grids, double v) {
   const double sign = smooth_sign(v, effect::kInnerWidthMps);
   if (within<effect::kWidths>(column, effect::kSign))
     return smooth_sign(v, effect::kWidthMps[static_cast<std::size_t>(column - effect::kSign)]);
   if (within<effect::kStribeckSpeeds>(column, effect::kStribeck)) {
     const auto i = static_cast<std::size_t>(column - effect::kStribeck);
-    return sign * std::exp(-std::abs(v) / effect::kStribeckMps[i]);
+    return sign * std::exp(-std::abs(v) / grids.stribeck_mps[i]);
   }
   const bool memory = within<effect::kDahlDistances>(column, effect::kDahl) ||
                       within<effect::kBacklashGaps>(column, effect::kBacklash) ||
@@ -40,7 +40,8 @@ double steady(int column, double v) {
   return column == effect::kFrameOnce ? 0.5 * v : 0.0;  // v = 2 z_b' with the wheelsets at rest
 }
 
-double sliding_force(const effect::Model& model, const effect::ModelFit& fit, double v) {
+double sliding_force(const effect::Model& model, const effect::Grids& grids,
+                     const effect::ModelFit& fit, double v) {
   effect::ModelFit part = fit;
   int term = effect::ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i) {
@@ -48,7 +49,7 @@ double sliding_force(const effect::Model& model, const effect::ModelFit& fit, do
       if (!is_damping(model.effect[i])) part.theta[term] = 0.0;
   }
   effect::Row row;
-  for (int c = 0; c < effect::kColumns; ++c) row[c] = steady(c, v);
+  for (int c = 0; c < effect::kColumns; ++c) row[c] = steady(c, grids, v);
   return effect::ModelFitter::force(model, part, row);
 }
 
@@ -59,8 +60,8 @@ std::vector<LawRow> truck_law(const effect::Explanation& e, double mass_kg, doub
   for (int i = -kPoints; i <= kPoints; ++i) {
     if (i == 0) continue;
     const double v = reach_mps * i / kPoints;
-    out.push_back({v, mass_kg * sliding_force(e.base_model, e.base, v),
-                   mass_kg * sliding_force(e.model, e.final, v)});
+    out.push_back({v, mass_kg * sliding_force(e.base_model, {}, e.base, v),
+                   mass_kg * sliding_force(e.model, e.grids, e.final, v)});
   }
   return out;
 }

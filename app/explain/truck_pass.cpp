@@ -33,12 +33,23 @@ TruckPass pass_of(const Config& config, const SourceOptions& source,
   pass.feed = open_feed(config, source, truck_source(config, source));
   core.screen = pass.feed->screen();
   pass.run = std::make_unique<TruckRun>(config, core.screen);
-  pass.diagnosis = std::make_unique<effect::Diagnosis>(core, options.scale_m);
-  pass.run->watch(
-      [&diagnosis = *pass.diagnosis, &options](const Sample& sample, const UpdateResult& result) {
-        diagnosis.update(sample, result);
-        if (options.watch) options.watch(sample, result, diagnosis);
-      });
+  pass.diagnosis = std::make_unique<effect::Diagnosis>(core, options.grids);
+  const auto take = [&diagnosis = *pass.diagnosis, &options](const Sample& sample,
+                                                             const UpdateResult& result) {
+    diagnosis.update(sample, result);
+    if (options.watch) options.watch(sample, result, diagnosis);
+  };
+  std::unique_ptr<Identifier> second;
+  Alignment alignment{options.lateness, core.sample_rate_hz};
+  if (options.lateness.late_s == 0.0) {
+    pass.run->watch(take);
+  } else {
+    second = std::make_unique<Identifier>(core);
+    pass.run->watch([&](const Sample& sample, const UpdateResult&) {
+      const auto aligned = alignment.next(sample);
+      if (aligned) take(*aligned, second->update(*aligned));
+    });
+  }
   const auto no_state = [](const TruckRun&) { return std::string{}; };
   pump(*pass.feed, source, options.show_progress, no_state, *pass.run);
   pass.run->close();

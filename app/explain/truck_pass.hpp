@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/config/config.hpp"
+#include "app/explain/alignment.hpp"
 #include "app/identify/sample_feed.hpp"
 #include "app/identify/truck_run.hpp"
 #include "dampline/effect/diagnosis.hpp"
@@ -18,9 +19,10 @@ struct TruckPass {
 };
 
 struct TruckPassOptions {
-  double scale_m{0.0};  ///< the deflection's size where it is fixed
+  effect::Grids grids{};   ///< of candidates; their scale is learnt where it is 0
+  LateChannel lateness{};  ///< of a channel that is set right for the diagnosis
   bool show_progress{false};
-  /// Sees every sample after the diagnosis took it.
+  /// Sees every sample that the diagnosis took.
   std::function<void(const Sample&, const UpdateResult&, const effect::Diagnosis&)> watch{};
 };
 

@@ -41,7 +41,7 @@ void LiveExplainer::take(const Sample& sample, const UpdateResult& result) noexc
     turn_.store(Turn::kCopy, std::memory_order_relaxed);
   } else if (turn == Turn::kCopy && copy_->step(diagnosis_->store())) {
     impulses_ = diagnosis_->impulses();
-    scale_m_ = diagnosis_->scale_m();
+    grids_ = diagnosis_->grids();
     forbidden_ = faults_forbid_naming(run_.fault_kinds());
     turn_.store(Turn::kJudge, std::memory_order_release);
   }
@@ -69,7 +69,7 @@ void LiveExplainer::run() {
 
 void LiveExplainer::judge() {
   Explained out;
-  out.explanation = explainer_->explain(copy_->store(), impulses_, scale_m_, config_);
+  out.explanation = explainer_->explain(copy_->store(), impulses_, grids_, config_);
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return;
   out.withheld = forbidden_;
   if (out.withheld) withhold_effects(out.explanation);

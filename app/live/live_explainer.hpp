@@ -49,7 +49,7 @@ class LiveExplainer {
   std::unique_ptr<effect::Diagnosis> diagnosis_;
   std::unique_ptr<effect::StoreCopy> copy_;
   effect::ImpulseMeter impulses_;
-  double scale_m_{0.0};
+  effect::Grids grids_;
   bool forbidden_{false};
   std::int64_t next_tick_{0};
   std::atomic<Turn> turn_{Turn::kWait};

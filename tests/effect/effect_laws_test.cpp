@@ -19,7 +19,7 @@ Point moving(double deflection_m, double velocity_mps) {
 }
 
 TEST(EffectLaws, PolynomialsAndContactsAreWhatTheyAreCalled) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const LawValues up = laws(moving(2.5e-3, 0.05));
   EXPECT_FLOAT_EQ(up[kSquare], 6.25e-6F);
   EXPECT_FLOAT_EQ(up[kCube], 15.625e-9F);
@@ -36,14 +36,14 @@ TEST(EffectLaws, PolynomialsAndContactsAreWhatTheyAreCalled) {
 }
 
 TEST(EffectLaws, StribeckFrictionFadesByItsSpeed) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const LawValues out = laws(moving(0.0, 0.024));
   for (std::size_t i = 0; i < kStribeckSpeeds; ++i)
     EXPECT_NEAR(out[kStribeck + at(i)], std::exp(-0.024 / kStribeckMps[i]), 1e-6);
 }
 
 TEST(EffectLaws, TangentsAreTheSlopeOfTheSign) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const int column = kSign + 3;
   ASSERT_EQ(kWidthMps[3], kInnerWidthMps);
   constexpr double kStepMps = 1e-4;
@@ -62,7 +62,7 @@ TEST(EffectLaws, TangentsAreTheSlopeOfTheSign) {
 }
 
 TEST(EffectLaws, DahlFrictionBuildsUpOverItsDistance) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const double step_m = 1e-6;
   double y = 0.0;
   static_cast<void>(laws(moving(y, 0.01)));
@@ -78,7 +78,7 @@ TEST(EffectLaws, DahlFrictionBuildsUpOverItsDistance) {
 }
 
 TEST(EffectLaws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const double gap_m = kBacklashGap[4] * kScaleM;
   const int column = kBacklash + 4;
   double y = 0.0;
@@ -97,7 +97,7 @@ TEST(EffectLaws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
 }
 
 TEST(EffectLaws, PitchTurnsAroundNoFrictionUntilOneDamperSlidesBack) {
-  EffectLaws laws{kScaleM, kStepS};
+  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
   const Point p = moving(0.0, 0.02);
   EXPECT_NEAR(laws(p)[kPitchSign], 1.0, 1e-6);  // nothing turns the frame
   Point turned = p;

@@ -18,6 +18,7 @@ Step step(Effect effect, double gain, double block_t, double coefficient_t) {
 Model with(Effect effect) {
   Candidate known;
   known.effect = effect;
+  known.count = 1;
   return Model{}.with(known);
 }
 
@@ -60,6 +61,13 @@ TEST(Rules, ImperfectionsOfWhatIsKnownAreNoEffects) {
 TEST(Rules, ASkewBesideMemoryStandsInNobodysWay) {
   EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.05, 10.0, 25.0)), Verdict::kNo);
   EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.08, 10.0, 25.0)), Verdict::kYes);
+}
+
+TEST(Rules, ALateChannelThatWasSetRightHidesNothing) {
+  Candidate late;
+  late.effect = Effect::kTimeSkew;  // without a column
+  const Step mode = step(Effect::kUnmodelledMode, 0.035, 10.0, 25.0);
+  EXPECT_EQ(judge_step(Model{}.with(late), false, true, mode), Verdict::kYes);
 }
 
 TEST(Rules, ALateChannelLooksLikeAWrongGainOfTheSame) {

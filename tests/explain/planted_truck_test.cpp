@@ -251,6 +251,32 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"gain_error", "gain_error", wrong_gain()}),
     [](const ::testing::TestParamInfo<Planted>& tested) { return std::string{tested.param.name}; });
 
+double found_in(const effect::Step& step, const std::string& name) {
+  for (std::size_t i = 0; i < step.parameter_count; ++i)
+    if (name == step.parameter[i].name) return step.parameter[i].estimate.value;
+  return 0.0;
+}
+
+TEST(ATruck, ALateChannelIsSetRight) {
+  Plant plant;
+  plant.frame_late = 11;
+  const Explained found = explained(plant, 18);
+  const effect::Explanation& e = found.explanation;
+  ASSERT_EQ(e.step_count, 1U) << summarize(found);
+  // The motion, which takes the new velocity for its step, is half a step ahead of the input.
+  const double late_s = (11.0 - 0.5) * kStepS;
+  EXPECT_NEAR(found_in(e.step[0], "time_skew_frame"), late_s, 0.03 * late_s) << summarize(found);
+  EXPECT_NEAR(e.final_coulomb_n.value, kCoulombN, 0.01 * kCoulombN);
+  EXPECT_NEAR(e.final_stiffness_npm.value, kSpringNpm, 0.02 * kSpringNpm) << summarize(found);
+}
+
+TEST(ATruck, AModeIsFoundBetweenThePointsOfItsGrid) {
+  const Explained found = explained(mode(0.21, 9.65), 19);
+  const effect::Explanation& e = found.explanation;
+  ASSERT_EQ(e.step_count, 1U) << summarize(found);
+  EXPECT_NEAR(found_in(e.step[0], "unmodelled_mode_frequency"), 9.65, 0.05) << summarize(found);
+}
+
 TEST(ATruck, LacksNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {21U, 22U}) {
     const Explained found = explained({}, seed);

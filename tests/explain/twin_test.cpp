@@ -216,7 +216,7 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   for (std::size_t c = 0; c < kChannels; ++c) settings.noise_mps2[c] = guard->noise_mps2(c);
   Twin twin{settings};
   const auto again = std::make_unique<Identifier>(core);
-  const auto twins = std::make_unique<effect::Diagnosis>(core, diagnosis->scale_m());
+  const auto twins = std::make_unique<effect::Diagnosis>(core, diagnosis->grids());
   for (const Sample& s : samples) {
     const auto t = twin.next(s);
     if (t) twins->update(*t, again->update(*t));

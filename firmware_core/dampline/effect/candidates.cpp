@@ -31,21 +31,22 @@ void add_damping(CandidateList& out) noexcept {
   both.regressor[both.count++] = viscous_regressor();
 }
 
-void add_friction(CandidateList& out) noexcept {
+void add_friction(const Grids& grids, CandidateList& out) noexcept {
   add(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
   add(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0, Regressor::of(kProgressiveAbsolute));
   for (std::size_t i = 0; i < kStribeckSpeeds; ++i) {
+    if (grids.is_fine(Effect::kStribeck) && i != kFineStribeck) continue;
     add(out, Effect::kStribeck, i, kPlainForm, 1, Regressor::of(kStribeck + at(i)));
   }
   for (std::size_t i = 0; i < kDahlDistances; ++i) {
     add(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, Regressor::of(kDahl + at(i)));
-    if (i + 1 < kDahlDistances) {
+    if (i + 1 < kDahlDistances && !grids.is_fine(Effect::kPreslidingHysteresis)) {
       add_pair(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, kDahl + at(i));
     }
   }
   for (std::size_t i = 0; i < kBacklashGaps; ++i) {
     add(out, Effect::kBacklash, i, kPlainForm, 1, Regressor::of(kBacklash + at(i)));
-    if (i + 1 < kBacklashGaps) {
+    if (i + 1 < kBacklashGaps && !grids.is_fine(Effect::kBacklash)) {
       add_pair(out, Effect::kBacklash, i, kPlainForm, 1, kBacklash + at(i));
     }
   }
@@ -63,13 +64,13 @@ void add_stiffness(CandidateList& out) noexcept {
   }
 }
 
-void add_modes(CandidateList& out) noexcept {
+void add_modes(const Grids& grids, CandidateList& out) noexcept {
   for (std::size_t i = 0; i < kPitchModes; ++i) {
     add(out, Effect::kUnmodelledMode, i, kPitchForm, 1, Regressor::of(kPitchSign + at(i)));
   }
   for (std::size_t i = 0; i < kFlexibleModes; ++i) {
     add(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, Regressor::of(kModeBend + at(i)));
-    if (i + 1 < kFlexibleModes) {
+    if (i + 1 < kFlexibleModes && !grids.is_fine(Effect::kUnmodelledMode)) {
       add_pair(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, kModeBend + at(i));
     }
   }
@@ -140,12 +141,12 @@ void refresh(const BaseForce& base, Candidate& candidate) noexcept {
     candidate.regressor[0] = gain_regressor(base, candidate.form);
 }
 
-void list_candidates(const BaseForce& base, CandidateList& out) noexcept {
+void list_candidates(const BaseForce& base, const Grids& grids, CandidateList& out) noexcept {
   out.count = 0;
   add_damping(out);
-  add_friction(out);
+  add_friction(grids, out);
   add_stiffness(out);
-  add_modes(out);
+  add_modes(grids, out);
   add_sensors(base, out);
 }
 

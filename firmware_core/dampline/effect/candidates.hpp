@@ -6,6 +6,7 @@
 
 #include "dampline/effect/columns.hpp"
 #include "dampline/effect/effect.hpp"
+#include "dampline/effect/grids.hpp"
 
 namespace dampline::effect {
 
@@ -39,6 +40,14 @@ struct Candidate {
   std::array<Regressor, kMostRegressors> regressor{};
 };
 
+[[nodiscard]] constexpr bool is_of_grid(const Candidate& a, const Candidate& b) noexcept {
+  return a.effect == b.effect && a.form == b.form;
+}
+/// Two neighbours of a grid.
+[[nodiscard]] constexpr bool is_pair(const Candidate& candidate) noexcept {
+  return candidate.count > 1 && candidate.effect != Effect::kAsymmetricViscous;
+}
+
 /// Forms of the effects that have more than one.
 enum Form : std::uint8_t {
   kPlainForm = 0,
@@ -64,8 +73,9 @@ struct CandidateList {
   std::array<Candidate, kMostCandidates> item{};
 };
 
-/// The library of effects, every point of every grid.
-void list_candidates(const BaseForce& base, CandidateList& out) noexcept;
+/// The library of effects, every point of every grid, and between neighbours where the grid is
+/// wide.
+void list_candidates(const BaseForce& base, const Grids& grids, CandidateList& out) noexcept;
 
 /// The candidates of a model that need the base force, with what is known of it now: channels that
 /// are late or wrongly scaled.

@@ -49,6 +49,18 @@ inline constexpr std::array<PitchShape, kPitchModes> kPitch{{{7.5, 0.4e-3},
 inline constexpr double kFlexibleDamping = 0.04;
 inline constexpr std::array<double, kFlexibleModes> kFlexibleHz{
     5.2, 5.7, 6.3, 6.9, 7.6, 8.4, 9.2, 10.1, 11.1, 12.3, 13.5, 14.8, 16.3, 18.0, 19.8, 21.7, 23.9};
+struct FlexibleShape {
+  double frequency_hz;
+  double damping_ratio;
+};
+constexpr std::array<FlexibleShape, kFlexibleModes> flexible_shapes() noexcept {
+  std::array<FlexibleShape, kFlexibleModes> out{};
+  for (std::size_t i = 0; i < kFlexibleModes; ++i) out[i] = {kFlexibleHz[i], kFlexibleDamping};
+  return out;
+}
+/// Drawn together around a frequency, the same points are frequencies times dampings; two are left.
+inline constexpr std::size_t kFineFrequencies = 5;
+inline constexpr std::size_t kFineDampings = 3;
 
 /// The columns of a diagnosis row, in its order. All are forces per unit of moving mass once
 /// multiplied by their coefficient; the target is -z_b''.

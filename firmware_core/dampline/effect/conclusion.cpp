@@ -45,6 +45,14 @@ void conclude(std::uint64_t impacts, Explanation& e) noexcept {
   }
 }
 
+Model remembering_part(const Explanation& e) noexcept {
+  Model out = e.base_model;
+  for (std::size_t i = e.base_count; i < e.model.count; ++i) {
+    if (has_memory(e.model.effect[i].effect)) out = out.with(e.model.effect[i]);
+  }
+  return out;
+}
+
 void drop_steps(Explanation& e) noexcept {
   e.step_count = 0;
   e.model = e.base_model;

@@ -16,18 +16,25 @@ double rounded_scale(double length_m) noexcept {
   return 1e-3 * std::exp2(0.5 * steps);
 }
 
+Grids scaled(Grids grids, double scale_m) noexcept {
+  grids.scale_m = scale_m;
+  return grids;
+}
+
 }  // namespace
 
-Diagnosis::Diagnosis(const IdentifierConfig& config, double scale_m) noexcept
+Diagnosis::Diagnosis(const IdentifierConfig& config, const Grids& grids) noexcept
     : sample_rate_hz_{config.sample_rate_hz},
       block_ticks_{std::lround(Identifier::kBlockS * config.sample_rate_hz)},
       raw_{config.sample_rate_hz},
       rows_{config.sample_rate_hz},
-      mean_{scale_m > 0.0 ? scale_m : kStartScaleM, 1.0 / config.sample_rate_hz},
-      scale_known_{scale_m > 0.0} {
+      mean_{scaled(grids, grids.scale_m > 0.0 ? grids.scale_m : kStartScaleM),
+            1.0 / config.sample_rate_hz},
+      scale_known_{grids.scale_m > 0.0} {
   const double step_s = 1.0 / sample_rate_hz_;
   for (std::size_t i = 0; i < kFlexibleModes; ++i) {
-    flexible_[i] = Resonator{kFlexibleHz[i], kFlexibleDamping, step_s};
+    flexible_[i] =
+        Resonator{grids.flexible[i].frequency_hz, grids.flexible[i].damping_ratio, step_s};
   }
 }
 
@@ -44,7 +51,7 @@ bool Diagnosis::learn(const Motion& motion) noexcept {
   learnt_squares_ += motion.deflection_m * motion.deflection_m;
   if (static_cast<double>(++learnt_) < kLearningS * sample_rate_hz_) return false;
   const double rms_m = std::sqrt(learnt_squares_ / static_cast<double>(learnt_));
-  mean_ = LawMean{rounded_scale(rms_m), 1.0 / sample_rate_hz_};
+  mean_ = LawMean{scaled(grids(), rounded_scale(rms_m)), 1.0 / sample_rate_hz_};
   scale_known_ = true;
   in_stretch_ = false;
   return true;

@@ -23,8 +23,8 @@ class Diagnosis {
   static constexpr double kLearningS = 8.0;
 
   /// Precondition: Identifier::check(config).ok().
-  /// `scale_m`: the deflection's size, where another record has fixed it; 0: learnt.
-  explicit Diagnosis(const IdentifierConfig& config, double scale_m = 0.0) noexcept;
+  /// `grids`: those of another record, or the ordinary ones; their scale is learnt where it is 0.
+  explicit Diagnosis(const IdentifierConfig& config, const Grids& grids = {}) noexcept;
 
   void update(const Sample& sample, const UpdateResult& result) noexcept;
   /// The end of a record: closes the open blocks.
@@ -41,7 +41,8 @@ class Diagnosis {
   [[nodiscard]] const RawRing& raw() const noexcept { return raw_; }
   /// The deflection's size: its rms over the learning time, rounded to a half power of two of a
   /// millimetre so that records share their grids. 0 until it is known.
-  [[nodiscard]] double scale_m() const noexcept { return scale_known_ ? mean_.scale_m() : 0.0; }
+  [[nodiscard]] double scale_m() const noexcept { return scale_known_ ? grids().scale_m : 0.0; }
+  [[nodiscard]] const Grids& grids() const noexcept { return mean_.grids(); }
   /// Means over the moving samples.
   [[nodiscard]] double velocity_rms_mps() const noexcept;
   [[nodiscard]] double deflection_rms_m() const noexcept;

@@ -45,7 +45,7 @@ void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
   out[kProgressiveAbsolute] = single(std::abs(p.deflection_m) * sign);
   out[kSpeedSquared] = single(v * speed);
   out[kSpeed] = single(speed);
-  double fading = std::exp(-speed / kStribeckMps[kStribeckSpeeds - 1]);
+  double fading = std::exp(-speed / grids_.stribeck_mps[kStribeckSpeeds - 1]);
   for (std::size_t i = kStribeckSpeeds; i-- > 0; fading *= fading) {
     out[kStribeck + at(i)] = single(sign * fading);
   }
@@ -59,7 +59,7 @@ void EffectLaws::stiffness(double y, LawValues& out) const noexcept {
   out[kCube] = single(y * y * y);
   out[kMagnitude] = single(std::abs(y));
   for (std::size_t i = 0; i < kBumpGaps; ++i) {
-    const double gap_m = kBumpGap[i] * scale_m_;
+    const double gap_m = grids_.bump_gap[i] * grids_.scale_m;
     out[kBumpUp + at(i)] = single(std::max(y - gap_m, 0.0));
     out[kBumpDown + at(i)] = single(std::max(-y - gap_m, 0.0));
   }
@@ -77,12 +77,12 @@ void EffectLaws::memory(const Point& p, double sign, LawValues& out) noexcept {
   const double towards = step_m < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < kDahlDistances; ++i) {
     // d zeta / dy = (1 - zeta sign v) / r, exact over a way without reversal
-    const double kept = decay(std::abs(step_m) / (kDahlDistance[i] * scale_m_));
+    const double kept = decay(std::abs(step_m) / (grids_.dahl_distance[i] * grids_.scale_m));
     zeta_[i] = towards + (zeta_[i] - towards) * kept;
     out[kDahl + at(i)] = single(zeta_[i]);
   }
   for (std::size_t i = 0; i < kBacklashGaps; ++i) {
-    const double gap_m = kBacklashGap[i] * scale_m_;
+    const double gap_m = grids_.backlash_gap[i] * grids_.scale_m;
     piston_m_[i] = std::clamp(piston_m_[i], y - 0.5 * gap_m, y + 0.5 * gap_m);
     const double left_m = 0.5 * gap_m - towards * (y - piston_m_[i]);  // still to go to the end
     const double engaged = std::clamp(1.0 - left_m / (kEngagedOver * gap_m), 0.0, 1.0);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "dampline/effect/columns.hpp"
+#include "dampline/effect/grids.hpp"
 #include "dampline/effect/instant.hpp"
 #include "dampline/effect/pitch_bank.hpp"
 
@@ -14,24 +15,26 @@ namespace dampline::effect {
 using LawValues = Eigen::Matrix<float, kLawColumnsOfEffects, 1>;
 
 /// Every candidate law as a regressor over the motion and its history. Lengths are multiples of
-/// `scale_m`, the size of the deflection.
+/// the size of the deflection.
 class EffectLaws {
  public:
-  EffectLaws(double scale_m, double step_s) noexcept : scale_m_{scale_m}, pitch_{step_s} {}
+  /// Precondition: grids.scale_m > 0.
+  EffectLaws(const Grids& grids, double step_s) noexcept
+      : grids_{grids}, pitch_{step_s, grids.pitch} {}
 
   /// The columns at a point; points come in the order of time, `step_s` apart, since some laws
   /// remember.
   [[nodiscard]] LawValues operator()(const Point& point) noexcept;
   /// Forgets the history.
   void reset() noexcept;
-  [[nodiscard]] double scale_m() const noexcept { return scale_m_; }
+  [[nodiscard]] const Grids& grids() const noexcept { return grids_; }
 
  private:
   void friction(const Point& point, LawValues& out) const noexcept;
   void stiffness(double deflection_m, LawValues& out) const noexcept;
   void memory(const Point& point, double sign, LawValues& out) noexcept;
 
-  double scale_m_;
+  Grids grids_;
   bool any_{false};
   double last_deflection_m_{0.0};
   std::array<double, kDahlDistances> zeta_{};

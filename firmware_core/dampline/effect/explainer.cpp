@@ -15,8 +15,6 @@ constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
 constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
 constexpr double kReadjusted = 0.999;
 constexpr double kSimplerWithin = 0.02;
-constexpr double kGridStd = 0.29;       // of a place known to one step: 1 / sqrt(12)
-constexpr double kRowsPerFact = 4.0;    // windows overlap
 constexpr double kImpulseShare = 0.08;  // of the residual's energy in large values
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
@@ -26,18 +24,6 @@ bool contains(const Model& model, Effect effect) noexcept {
     if (model.effect[i].effect == effect) return true;
   }
   return false;
-}
-
-BaseForce base_of(const ModelFit& fit) noexcept {
-  return {fit.theta[ModelFit::kCoulomb], fit.theta[ModelFit::kStiffness]};
-}
-
-bool is_of_grid(const Candidate& a, const Candidate& b) noexcept {
-  return a.effect == b.effect && a.form == b.form;
-}
-/// Two neighbours of a grid.
-bool is_pair(const Candidate& candidate) noexcept {
-  return candidate.count > 1 && candidate.effect != Effect::kAsymmetricViscous;
 }
 
 /// Signs that physics asks for: of the effect's first coefficient, and friction that does not
@@ -79,7 +65,7 @@ double handicap(const Candidate& candidate) noexcept {
 
 void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept {
   best = {};
-  list_candidates(base_of(now), candidates_);
+  list_candidates(base_of(now), grids_, candidates_);
   for (std::size_t i = 0; i < candidates_.count; ++i) {
     const Candidate& candidate = candidates_.item[i];
     if (contains(model, candidate.effect)) continue;
@@ -155,9 +141,10 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
   bool any = false;
   for (std::size_t i = 0; i < out.step_count; ++i) {
     Candidate& place = out.model.effect[out.base_count + i];
+    if (place.count == 0) continue;
     const Candidate before = place;
     Best best{true, before, now.held_out_nmse, handicap(before) * now.held_out_nmse};
-    list_candidates(base_of(now), candidates_);
+    list_candidates(base_of(now), grids_, candidates_);
     int term = ModelFit::kFirstEffect;
     for (std::size_t e = 0; e < out.base_count + i; ++e)
       term += static_cast<int>(out.model.effect[e].count);
@@ -197,6 +184,10 @@ Step Explainer::step_of(const Model& model, const Best* const* order, std::size_
 
 void Explainer::backward(Explanation& out, ModelFit& now) noexcept {
   for (std::size_t i = 0; out.step_count > 1 && i < out.step_count;) {
+    if (out.model.effect[out.base_count + i].count == 0) {
+      ++i;
+      continue;
+    }
     const Model less = out.model.without(out.base_count + i);
     const ModelFit without = fitter_.fit(less);
     if (!without.ok || without.held_out_nmse > (1.0 + kNeeded) * now.held_out_nmse) {
@@ -211,46 +202,14 @@ void Explainer::backward(Explanation& out, ModelFit& now) noexcept {
   }
 }
 
-/// Where the error is least between the grid's points: the vertex of the parabola through it and
-/// its neighbours; its deviation from the parabola's curvature.
-void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
-                       Step& step) noexcept {
-  const Candidate& chosen = step.chosen;
-  step.place = chosen.variant;
-  step.place_std = kGridStd;
-  if (is_pair(chosen)) {
-    int term = ModelFit::kFirstEffect;
-    for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
-    const double low = std::abs(final.theta[term]);
-    const double high = std::abs(final.theta[term + 1]);
-    step.place += high / (low + high);
-    return;
-  }
-  list_candidates(base_of(final), candidates_);
-  std::array<double, 2> side{};
-  for (std::size_t c = 0; c < candidates_.count; ++c) {
-    const Candidate& other = candidates_.item[c];
-    if (!is_of_grid(other, chosen) || other.count != 1) continue;
-    const int distance = static_cast<int>(other.variant) - static_cast<int>(chosen.variant);
-    if (distance != 1 && distance != -1) continue;
-    Model neighbour = model;
-    neighbour.effect[i] = other;
-    side[distance > 0 ? 1 : 0] = fitter_.fit(neighbour).nmse;
-  }
-  const double curvature = side[0] + side[1] - 2.0 * final.nmse;
-  if (!(side[0] > 0.0 && side[1] > 0.0 && curvature > 0.0)) return;
-  step.place += std::clamp(0.5 * (side[0] - side[1]) / curvature, -0.5, 0.5);
-  const double target = evidence_.total.at(kTarget, kTarget);
-  step.place_std = std::clamp(std::sqrt(2.0 * kRowsPerFact / (curvature * target)), 0.05, kGridStd);
-}
-
-Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter, double scale_m,
-                               const ExplainerConfig& config) noexcept {
+Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter,
+                               const Grids& grids, const ExplainerConfig& config) noexcept {
   Explanation out;
+  out.grids = grids_ = grids;
   if (store.count() < kFewestEntries || !evidence_.load(store)) return out;
   allowed_ = config.allowed;
   if (config.base_viscous) {
-    list_candidates({}, candidates_);
+    list_candidates({}, grids_, candidates_);
     out.model = out.model.with(candidates_.item[0]);
     out.base_count = 1;
   }
@@ -260,6 +219,7 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   out.base = now;
   out.base_weight = evidence_.weight;
   out.base_target = evidence_.total.at(kTarget, kTarget);
+  if (config.known != nullptr) keep(store, *config.known, out, now);
   while (forward(out, now)) {
     now = settle(store, out.model);
     if (readjust(out, now)) now = settle(store, out.model);
@@ -274,7 +234,7 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
     refine(out.model, out.base_count + i, out.final, out.step[i]);
   }
   out.floor_nmse = config.floor_nmse;
-  describe(config.moving_mass_kg, scale_m, out);
+  describe(config.moving_mass_kg, out);
   conclude(0, out);
   return out;
 }

@@ -12,6 +12,10 @@ struct ExplainerConfig {
   double floor_nmse{0.0};                      ///< of a complete model, from elsewhere; 0: unknown
   bool base_viscous{false};                    ///< c v belongs to the base model
   std::array<bool, kEffects> allowed = all();  ///< candidates, by Effect
+  /// An explanation of the same record by wider grids, or with a channel late that is now set
+  /// right: its base counts, its first effect and its late channel stay, what is beside them is
+  /// judged anew. Null: there is none.
+  const Explanation* known{nullptr};
 
   static constexpr std::array<bool, kEffects> all() noexcept {
     std::array<bool, kEffects> out{};
@@ -31,11 +35,11 @@ class Explainer {
 
   [[nodiscard]] Explanation explain(const Diagnosis& diagnosis,
                                     const ExplainerConfig& config) noexcept {
-    return explain(diagnosis.store(), diagnosis.impulses(), diagnosis.scale_m(), config);
+    return explain(diagnosis.store(), diagnosis.impulses(), diagnosis.grids(), config);
   }
   /// The same of what was copied out of a Diagnosis that goes on.
   [[nodiscard]] Explanation explain(const GramStore& store, const ImpulseMeter& impulses,
-                                    double scale_m, const ExplainerConfig& config) noexcept;
+                                    const Grids& grids, const ExplainerConfig& config) noexcept;
   /// NMSE of another record's rows by models that were fitted elsewhere; 0 when it has too few.
   /// Precondition: the other Diagnosis has the scale of the one that was explained.
   struct Prediction {
@@ -49,6 +53,11 @@ class Explainer {
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
   /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
   /// rows.
+  /// How late a channel of a record still is beside a model's other effects, s. Precondition: the
+  /// Diagnosis has the grids of the model.
+  [[nodiscard]] Estimate lateness(const Diagnosis& diagnosis, const Model& model,
+                                  const Candidate& skew) noexcept;
+
   struct Twins {
     const Diagnosis& base;
     const Diagnosis* other_noise{nullptr};  ///< the same once more: the floor is the mean of both
@@ -75,9 +84,15 @@ class Explainer {
   [[nodiscard]] Step step_of(const Model& model, const Best* const* order, std::size_t found,
                              std::size_t c, const ModelFit& now) noexcept;
   bool readjust(Explanation& out, ModelFit& now) noexcept;
+  void keep(const GramStore& store, const Explanation& known, Explanation& out,
+            ModelFit& now) noexcept;
   void add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
                      Step& step) noexcept;
   void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;
+  /// NMSE with the points of a grid on either side of a model's i-th effect, `apart` from it and in
+  /// its line, or in the lines before and after; 0: there is none.
+  [[nodiscard]] std::array<double, 2> beside(const Model& model, std::size_t i, int apart,
+                                             bool in_line) noexcept;
   /// What a model leaves of a twin in a record's weights, as a share of the record's own sum of
   /// squares; negative: the twin is too short.
   [[nodiscard]] double left_of_twin(const Diagnosis& twin, const Model& model,
@@ -90,6 +105,7 @@ class Explainer {
   ModelFitter fitter_;
   CandidateList candidates_;
   std::array<bool, kEffects> allowed_{};
+  Grids grids_;
 };
 
 }  // namespace dampline::effect

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/effect/grids.hpp"
 #include "dampline/effect/model_fit.hpp"
 #include "dampline/snapshot.hpp"
 
@@ -39,6 +40,7 @@ struct Step {
   Candidate chosen;
   double place{0.0};  ///< in the effect's grid, refined between its points
   double place_std{0.0};
+  double line_offset{0.0};  ///< of a mode between its line of the grid and the next
   double held_out_nmse_before{0.0};
   double held_out_nmse_after{0.0};
   double gain{0.0};           ///< 1 - after / before
@@ -57,6 +59,7 @@ struct Explanation {
   ModelFit final;
   Model base_model;
   Model model;                 ///< the final one: base, then steps
+  Grids grids;                 ///< of the effects' variants
   std::size_t base_count{0};   ///< effects of the base
   ScaleWeights base_weight{};  ///< of the scales in base's errors
   ScaleWeights weight{};       ///< of the scales in final's errors
@@ -82,6 +85,9 @@ inline constexpr double kIncompleteAbove = 1.5;
 /// Decides the conclusion from the steps and the floor. `impacts`: blows in the input, which every
 /// model leaves a little of.
 void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
+
+/// The base and what was added to it that has memory.
+[[nodiscard]] Model remembering_part(const Explanation& explanation) noexcept;
 
 /// Takes back all steps: what is left is the base's.
 void drop_steps(Explanation& explanation) noexcept;

@@ -8,8 +8,8 @@ namespace dampline::effect {
 /// each column averaged by the hat function of two samples' width (as the base law's, LawAverage).
 class LawMean {
  public:
-  LawMean(double scale_m, double step_s) noexcept
-      : laws_{scale_m, 0.25 * step_s},
+  LawMean(const Grids& grids, double step_s) noexcept
+      : laws_{grids, 0.25 * step_s},
         quarter_{Hermite::at(0.25, step_s)},
         half_{Hermite::at(0.5, step_s)},
         three_quarters_{Hermite::at(0.75, step_s)} {}
@@ -34,7 +34,7 @@ class LawMean {
     from_left_.setZero();
     count_ = 0;
   }
-  [[nodiscard]] double scale_m() const noexcept { return laws_.scale_m(); }
+  [[nodiscard]] const Grids& grids() const noexcept { return laws_.grids(); }
 
  private:
   EffectLaws laws_;

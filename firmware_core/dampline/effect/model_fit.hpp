@@ -51,6 +51,10 @@ struct ModelFit {
   std::array<double, kEffectEntries> held_out_error{};  ///< of each entry, of the total's target
 };
 
+[[nodiscard]] inline BaseForce base_of(const ModelFit& fit) noexcept {
+  return {fit.theta[ModelFit::kCoulomb], fit.theta[ModelFit::kStiffness]};
+}
+
 /// Fits a model and judges it on entries that were held out, in interleaved folds; the neighbours
 /// of what is held out take no part in the fit either, since windows overlap.
 class ModelFitter {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the explainer makes of records that it did not explain: predicted ones, and the twin.
+#include <algorithm>
+#include <cmath>
+
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::effect {
@@ -7,15 +10,6 @@ namespace {
 
 constexpr std::size_t kFewestEntries = 10;
 constexpr double kTwinGains = 2.0;  // a real effect gains more than so many times the twin's
-
-/// The base and what was added to it that has memory.
-Model remembering_part(const Explanation& e) noexcept {
-  Model out = e.base_model;
-  for (std::size_t i = e.base_count; i < e.model.count; ++i) {
-    if (has_memory(e.model.effect[i].effect)) out = out.with(e.model.effect[i]);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -52,6 +46,21 @@ bool Explainer::apply_floor(const Twins& twins, std::uint64_t impacts, Explanati
   e.floor_nmse = floor;
   conclude(impacts, e);
   return true;
+}
+
+Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
+                             const Candidate& skew) noexcept {
+  if (diagnosis.store().count() < kFewestEntries || !evidence_.load(diagnosis.store())) return {};
+  Model with;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    if (model.effect[i].count > 0) with = with.with(model.effect[i]);
+  }
+  int term = ModelFit::kFirstEffect;
+  for (std::size_t i = 0; i < with.count; ++i) term += static_cast<int>(with.effect[i].count);
+  with = with.with(skew);
+  const ModelFit fit = settle(diagnosis.store(), with);
+  if (!fit.ok) return {};
+  return {fit.theta[term], std::sqrt(std::max(fit.covariance(term, term), 0.0))};
 }
 
 /// Large residuals, too, are rare in time on a twin without impacts: those of sticking.

@@ -9,12 +9,16 @@
 namespace dampline::effect {
 namespace {
 
+/// Of a pitch frequency: its law is one of short steps, and a lower one with more slip leaves
+/// alike.
+constexpr double kPitchLawStd = 0.04;
+
 /// What a step's parameters are made of.
 struct Source {
   const ModelFit& fit;
   int term;  // of the effect's first coefficient
   double mass_kg;
-  double scale_m;
+  const Grids& grids;
   double factor;  // on deviations, for few entries
 
   [[nodiscard]] Estimate coefficient(int offset, double scale) const noexcept {
@@ -87,14 +91,14 @@ void describe_friction(const Source& s, Step& step) noexcept {
     }
     case Effect::kStribeck:
       add(step, "stribeck_share", s.share(), "");
-      return add(step, "stribeck_speed", on_grid(kStribeckMps, step, 1.0), "m/s");
+      return add(step, "stribeck_speed", on_grid(s.grids.stribeck_mps, step, 1.0), "m/s");
     case Effect::kPreslidingHysteresis:
       add(step, "presliding_hysteresis_force", sum_of(s, step, s.mass_kg), "N");
-      return add(step, "presliding_hysteresis_distance", on_grid(kDahlDistance, step, s.scale_m),
-                 "m");
+      return add(step, "presliding_hysteresis_distance",
+                 on_grid(s.grids.dahl_distance, step, s.grids.scale_m), "m");
     case Effect::kBacklash:
       add(step, "backlash_force", sum_of(s, step, s.mass_kg), "N");
-      return add(step, "backlash_gap", on_grid(kBacklashGap, step, s.scale_m), "m");
+      return add(step, "backlash_gap", on_grid(s.grids.backlash_gap, step, s.grids.scale_m), "m");
     default:
       return;
   }
@@ -111,26 +115,26 @@ void describe_stiffness(const Source& s, Step& step) noexcept {
       return add(step, "asymmetric_stiffness_difference", s.coefficient(0, 2.0 * s.mass_kg), "N/m");
     case Effect::kBumpStop:
       add(step, "bump_stop_stiffness", s.coefficient(0, s.mass_kg), "N/m");
-      return add(step, "bump_stop_gap", on_grid(kBumpGap, step, s.scale_m), "m");
+      return add(step, "bump_stop_gap", on_grid(s.grids.bump_gap, step, s.grids.scale_m), "m");
     default:
       return;
   }
 }
 
 void describe_mode(const Source& s, Step& step) noexcept {
-  std::array<double, kPitchFrequencies> pitch{};
-  for (std::size_t i = 0; i < pitch.size(); ++i) pitch[i] = kPitch[i].frequency_hz;
   if (step.chosen.form == kPitchForm) {
-    Step same = step;
-    same.place = static_cast<double>(step.chosen.variant % pitch.size()) +
-                 (step.place - static_cast<double>(step.chosen.variant));
-    add(step, "unmodelled_mode_frequency", on_grid(pitch, same, 1.0), "Hz");
+    const double ratio = s.grids.pitch[1].frequency_hz / s.grids.pitch[0].frequency_hz;
+    const double hz = pitch_of(step, s.grids).frequency_hz;
+    const double std = std::hypot(std::log(ratio) * step.place_std, kPitchLawStd);
+    add(step, "unmodelled_mode_frequency", {hz, hz * std}, "Hz");
     return add(step, "unmodelled_mode_force", s.coefficient(0, s.mass_kg), "N");
   }
   // t = (k X_k + F X_F - m B) / (1 - m): the coefficient is -m / (1 - m), m of all mass.
   const Estimate ratio = sum_of(s, step, -1.0);
   const double left = 1.0 / (1.0 + ratio.value);
-  add(step, "unmodelled_mode_frequency", on_grid(kFlexibleHz, step, 1.0), "Hz");
+  const double step_ratio = s.grids.flexible[1].frequency_hz / s.grids.flexible[0].frequency_hz;
+  const double hz = flexible_of(step, s.grids).frequency_hz;
+  add(step, "unmodelled_mode_frequency", {hz, hz * std::log(step_ratio) * step.place_std}, "Hz");
   add(step, "unmodelled_mode_mass",
       {s.mass_kg * ratio.value * left, s.mass_kg * ratio.std * left * left}, "kg");
 }
@@ -203,7 +207,7 @@ Estimate spring(const ModelFit& fit, const Model& model, double mass_kg, double 
 
 }  // namespace
 
-void describe(double mass_kg, double scale_m, Explanation& out) noexcept {
+void describe(double mass_kg, Explanation& out) noexcept {
   std::size_t entries = 0;
   for (const double e : out.base.held_out_error) entries += e > 0.0 ? 1 : 0;
   const double factor = short_record_factor(static_cast<double>(entries));
@@ -212,13 +216,16 @@ void describe(double mass_kg, double scale_m, Explanation& out) noexcept {
   out.final_coulomb_n = level(out.final, out.model, mass_kg, factor);
   out.final_stiffness_npm = spring(out.final, out.model, mass_kg, factor);
   int term = ModelFit::kFirstEffect + static_cast<int>(out.base_count);
-  for (std::size_t i = 0; i < out.step_count; ++i) {
-    const Source source{out.final, term, mass_kg, scale_m, factor};
+  for (std::size_t i = 0; i < out.step_count && out.base_count + i < out.model.count; ++i) {
+    const std::size_t count = out.model.effect[out.base_count + i].count;
+    if (count == 0) continue;
+    const Source source{out.final, term, mass_kg, out.grids, factor};
+    out.step[i].parameter_count = 0;
     describe_damping(source, out.step[i]);
     describe_friction(source, out.step[i]);
     describe_stiffness(source, out.step[i]);
     describe_rest(source, out.step[i]);
-    term += static_cast<int>(out.step[i].chosen.count);
+    term += static_cast<int>(count);
   }
 }
 

@@ -5,6 +5,6 @@
 namespace dampline::effect {
 
 /// Fills in the physical parameters of every step and of base and final model.
-void describe(double moving_mass_kg, double scale_m, Explanation& out) noexcept;
+void describe(double moving_mass_kg, Explanation& out) noexcept;
 
 }  // namespace dampline::effect

@@ -8,19 +8,21 @@
 
 namespace dampline::effect {
 
-/// The frame's pitch, d = a theta - (z_1 - z_2) / 2, as every point of kPitch would have it. Each
+/// The frame's pitch, d = a theta - (z_1 - z_2) / 2, as every point of a grid would have it. Each
 /// wheelset's damper slides at v +- 2 d', so friction turns the frame only where 2 |d'| exceeds
 /// |v|:
 ///   d'' + 2 r w d' + w^2 (d + s (sign(v + 2 d') - sign(v - 2 d')) / 2) = -(z_1'' - z_2'') / 2
 /// with w^2 = 2 k a^2 / I and s = F / (2 k), in short steps.
 class PitchBank {
  public:
-  explicit PitchBank(double step_s) noexcept : step_s_{step_s} {
+  explicit PitchBank(double step_s,
+                     const std::array<PitchShape, kPitchModes>& shapes = kPitch) noexcept
+      : step_s_{step_s} {
     for (std::size_t i = 0; i < kPitchModes; ++i) {
-      const double omega = 2.0 * 3.141592653589793238 * kPitch[i].frequency_hz;
+      const double omega = 2.0 * 3.141592653589793238 * shapes[i].frequency_hz;
       spring_ps_[i] = step_s * omega * omega;
       kept_[i] = 1.0 - 2.0 * kPitchDamping * omega * step_s;
-      friction_mps_[i] = spring_ps_[i] * kPitch[i].slip_m;
+      friction_mps_[i] = spring_ps_[i] * shapes[i].slip_m;
     }
   }
   /// One step, with `turn_mps2` = -(z_1'' - z_2'') / 2: the rate leaps from half a step before to
