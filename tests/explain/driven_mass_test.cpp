@@ -24,6 +24,15 @@ constexpr double kStiffnessNpm = 2.1e5;
 /// What beside m x'' + c x' + k x; of deflection and velocity.
 using Law = std::function<double(double, double)>;
 
+/// Bouc and Wen's hysteresis as its authors write it: z' = alpha v - beta (gamma |v| z + delta v
+/// |z|).
+struct Hysteresis {
+  double alpha{0.0}, beta{0.0}, gamma{0.0}, delta{0.0};
+  [[nodiscard]] double rate(double v, double z) const {
+    return alpha * v - beta * (gamma * std::abs(v) * z + delta * v * std::abs(z));
+  }
+};
+
 class Drive {
  public:
   Drive() {
@@ -46,16 +55,17 @@ class Drive {
 };
 
 /// 600 Hz, 20 s; deflection with noise of 2 um.
-std::string record(const Law& law) {
-  constexpr int kFine = 12;
+std::string record(const Law& law, const Hysteresis& hysteresis = {}) {
+  constexpr int kFine = 24;
   constexpr double kStepS = 1.0 / (600.0 * kFine);
   const Drive drive;
   std::mt19937_64 random{5};
   std::normal_distribution<double> noise;
   double x = 0.0;
   double v = 0.0;
+  double z = 0.0;
   const auto accel = [&](double t, double at, double rate) {
-    return (drive(t) - kViscous * rate - kStiffnessNpm * at - law(at, rate)) / kMassKg;
+    return (drive(t) - kViscous * rate - kStiffnessNpm * at - law(at, rate) - z) / kMassKg;
   };
   std::string out = "time_s,deflection_m,force_n\n";
   for (int i = -600 * kFine; i < 20 * 600 * kFine; ++i) {
@@ -68,13 +78,16 @@ std::string record(const Law& law) {
     const double a3 = accel(t + h, x + h * (v + h * a1), v + h * a2);
     const double a4 = accel(t + kStepS, x + kStepS * (v + h * a2), v + kStepS * a3);
     x += kStepS * v + kStepS * kStepS / 6.0 * (a1 + a2 + a3);
+    const double middle = v + 0.5 * h * (a1 + a2);
     v += kStepS / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    z += kStepS * hysteresis.rate(middle, z + h * hysteresis.rate(middle, z));
   }
   return out;
 }
 
-RigExplanation explained(const Law& law, const std::string& inertia = "identify") {
-  const dampline::testing::TemporaryFile file{record(law), ".csv"};
+RigExplanation explained(const Law& law, const std::string& inertia = "identify",
+                         const Hysteresis& hysteresis = {}) {
+  const dampline::testing::TemporaryFile file{record(law, hysteresis), ".csv"};
   Config config;
   config.model.base = {"viscous"};
   config.model.inertia = inertia;
@@ -125,6 +138,26 @@ TEST(ADrivenMass, IsDampedOtherwiseUpAndDown) {
   EXPECT_NEAR(value_of(found, "viscous_positive"), 13.0, 0.4);
   EXPECT_NEAR(value_of(found, "viscous_negative"), 6.0, 0.4);
 }
+
+void expect_hysteresis(const Hysteresis& planted) {
+  const RigExplanation found = explained([](double, double) { return 0.0; }, "identify", planted);
+  ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+  EXPECT_EQ(found.steps[0].effect, "presliding_hysteresis");
+  EXPECT_STREQ(found.verdict(), "explained") << summarize(found);
+  const double travel_m = 1.0 / (planted.beta * planted.gamma);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_travel"), travel_m, 0.08 * travel_m);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_shape"), planted.delta / planted.gamma, 0.05);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_stiffness"), planted.alpha,
+              0.03 * planted.alpha)
+      << summarize(found);
+  EXPECT_NEAR(value_of(found, "moving_mass"), kMassKg, 0.01 * kMassKg);
+}
+
+TEST(ADrivenMass, HasASpringWithBoucsAndWensHysteresis) {
+  expect_hysteresis({6.0e4, 1500.0, 0.9, -1.17});
+}
+
+TEST(ADrivenMass, HasAFrictionThatBuildsUpAsDahls) { expect_hysteresis({7.0e4, 2600.0, 1.0, 0.0}); }
 
 }  // namespace
 }  // namespace dampline::app

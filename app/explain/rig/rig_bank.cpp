@@ -18,6 +18,9 @@ constexpr std::size_t kBankSpread = 3;  // steps between the three travels of a 
 constexpr double kSoft = 0.25;          // of the level
 constexpr double kPlay =
     0.45;  // share of the build-up below that: free play; a straight one has 0.28
+constexpr double kSmoother = 0.8;  // of what the bank leaves
+constexpr double kFrictionStays = 0.97;
+constexpr double kSlips = 0.1;      // a law that comes to slip has a force
 constexpr double kUndecided = 1.6;  // between the errors of the smallest forms
 
 /// What a bank says in lengths and forces: coming from full slip on one side and moving to full
@@ -121,6 +124,50 @@ void RigSearch::rename_memory(Chosen& memory) const {
   const Read read =
       read_bank(columns_of(set_of(chosen_columns(), now.width)), now.fit.theta, longest_of(bank_));
   if (read.play_share > kPlay) memory.step.effect = memory.candidate.effect = "backlash";
+}
+
+/// One smooth law with two figures instead of a bank, where it leaves clearly less.
+void RigSearch::try_bouc_wen(Chosen& memory) {
+  const Chosen before = memory;
+  const bool friction = base_friction_left_;
+  const double error = judge(chosen_columns()).fit.held_out_nmse;
+  memory.candidate.columns.clear();
+  memory.ridge = 0.0;
+  base_friction_left_ = true;
+  bouc_wen_ = best_bouc_wen(records_, trial_base(), scale_.deflection_m);
+  if (bouc_wen_) {
+    memory.candidate.columns = {library_.add(bouc_wen_->column)};
+    evidence_ = std::make_unique<RigEvidence>(library_.columns, records_);
+    const double with = judge(chosen_columns()).fit.held_out_nmse;
+    base_friction_left_ = false;
+    const double alone = judge(chosen_columns()).fit.held_out_nmse;
+    base_friction_left_ = with < kFrictionStays * alone;
+    if (std::min(with, alone) < kSmoother * error) {
+      memory.step.effect = memory.candidate.effect = "presliding_hysteresis";
+      bank_.clear();
+      return;
+    }
+  }
+  bouc_wen_.reset();
+  memory = before;
+  base_friction_left_ = friction;
+}
+
+void RigSearch::describe_bouc_wen(Chosen& chosen, const Estimate& first) const {
+  const RigColumn& law = bouc_wen_->column;
+  const double travel_std_m = bouc_wen_->travel_std_m;
+  const double shape_std = bouc_wen_->shape_std;
+  auto& out = chosen.step.parameters;
+  const double slips = 1.0 + law.b;
+  if (slips > 2.0 * shape_std && slips > kSlips) {
+    const double force_n = first.value * law.a / slips;
+    const double share =
+        std::hypot(first.std / first.value, travel_std_m / law.a, shape_std / slips);
+    out.push_back({"presliding_hysteresis_force", force_n, share * force_n, "N"});
+  }
+  out.push_back({"presliding_hysteresis_stiffness", first.value, first.std, "N/m"});
+  out.push_back({"presliding_hysteresis_travel", law.a, travel_std_m, "m"});
+  out.push_back({"presliding_hysteresis_shape", law.b, shape_std, ""});
 }
 
 /// The deviation of each figure by the jackknife over the folds.

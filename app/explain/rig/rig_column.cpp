@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/explain/rig/rig_bouc_wen.hpp"
 #include "dampline/rig/rig_test_function.hpp"
 
 namespace dampline::app {
@@ -90,6 +91,7 @@ Eigen::VectorXd steady(const RigColumn& column, const RigSeries& series) {
   if (column.kind == Kind::kAttached)
     return attached_accel(series.deflection_m, series.velocity_mps, {column.a, column.b},
                           series.interval_s);
+  if (column.kind == Kind::kBoucWen) return bouc_wen(series.deflection_m, column.a, column.b);
   Eigen::VectorXd out{count};
   double z_m = std::clamp(series.start_m, -column.a, column.a);
   double slip_m = 0.0;

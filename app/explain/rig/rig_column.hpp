@@ -31,6 +31,7 @@ struct RigColumn {
     kProgressive,          ///< tanh(v / a) x
     kProgressiveAbsolute,  ///< tanh(v / a) |x|
     kAttached,             ///< acceleration of a mass on a spring: a Hz, damping ratio b
+    kBoucWen,              ///< z of travel a and shape b, see bouc_wen
     kStop,                 ///< u of travel a
     kGapUp,                ///< max(u, 0)^4 of travel a: no force about the middle
     kGapDown,              ///< -max(-u, 0)^4

@@ -135,12 +135,15 @@ void RigSearch::describe_steps(const Judged& now) {
       continue;
     }
     const auto at = std::find(set.begin(), set.end(), c.candidate.columns.front()) - set.begin();
-    if (c.ridge > 0.0)
+    const Estimate first{now.fit.theta[at], std::sqrt(std::max(now.fit.covariance(at, at), 0.0))};
+    if (column_of(c).kind == RigColumn::Kind::kBoucWen)
+      describe_bouc_wen(c, first);
+    else if (c.ridge > 0.0)
       describe_bank(c, now);
     else if (c.step.effect == "asymmetric_viscous")
       describe_sides(c, now, set);
     else
-      describe_small(c, {now.fit.theta[at], std::sqrt(std::max(now.fit.covariance(at, at), 0.0))});
+      describe_small(c, first);
   }
 }
 

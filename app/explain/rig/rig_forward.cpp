@@ -60,6 +60,13 @@ double jackknife_std(const std::vector<double>& left_out) {
   return std::sqrt((n - 1.0) / n * squares);
 }
 
+/// Friction that would drive: the candidate stands in for something else.
+bool RigSearch::has_driving_friction(const RigFit& fit) const {
+  constexpr double kDeviations = 5.0;
+  return library_.base_friction && base_friction_left_ &&
+         fit.theta[0] < -kDeviations * std::sqrt(std::max(fit.covariance(0, 0), 0.0));
+}
+
 /// Every effect in its best form beside a constant and a spring, the one that helps most first; of
 /// those that explain alike the plainest.
 std::vector<RigSearch::Ranked> RigSearch::rank() const {
@@ -76,6 +83,7 @@ std::vector<RigSearch::Ranked> RigSearch::rank() const {
     const ColumnSet set = set_of(joined(both, c.columns), with.width);
     const auto at = std::find(set.begin(), set.end(), c.columns.front()) - set.begin();
     if (c.sign * with.fit.theta[at] < 0.0) continue;
+    if (!is_memory(c.effect) && has_driving_friction(with.fit)) continue;
     const double gain = 1.0 - with.fit.held_out_nmse / reference.fit.held_out_nmse;
     Ranked& b = best[c.effect];
     if (b.candidate != nullptr && gain <= b.gain) continue;
@@ -234,7 +242,10 @@ bool RigSearch::forward() {
   chosen.other_memory = other_memory_of(order);
   chosen_.push_back(chosen);
   if (!filtered()) try_mass();
-  if (is_memory(chosen.step.effect)) refine(chosen_.back());
+  if (is_memory(chosen.step.effect)) {
+    refine(chosen_.back());
+    try_bouc_wen(chosen_.back());
+  }
   chosen_.back().step.held_out_after = judge(chosen_columns()).fit.held_out_nmse;
   chosen_.back().step.terms = terms();
   return true;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/explain/rig/rig_bouc_wen.hpp"
 #include "app/explain/rig/rig_explanation.hpp"
 #include "app/explain/rig/rig_library.hpp"
 #include "app/explain/rig/rig_trials.hpp"
@@ -47,10 +48,14 @@ class RigSearch {
   [[nodiscard]] Judged judge(const ColumnSet& more) const;
   [[nodiscard]] ColumnSet chosen_columns() const;
   [[nodiscard]] std::vector<RigColumn> columns_of(const ColumnSet& set) const;
+  [[nodiscard]] const RigColumn& column_of(const Chosen& chosen) const {
+    return library_.columns[static_cast<std::size_t>(chosen.candidate.columns.front())];
+  }
   [[nodiscard]] double ridge() const;
   [[nodiscard]] bool can_add(const RigCandidate& candidate) const;
   [[nodiscard]] std::vector<std::string> terms() const;
   [[nodiscard]] RigFloor floor_of(const ColumnSet& more) const;
+  [[nodiscard]] bool has_driving_friction(const RigFit& fit) const;
   [[nodiscard]] std::vector<Ranked> rank() const;
   [[nodiscard]] bool passes(const Ranked& top, double before_nmse) const;
   [[nodiscard]] RigFit best_with(const RigCandidate& first) const;
@@ -71,6 +76,7 @@ class RigSearch {
   void rename_memory(Chosen& memory) const;
   void backward();
   void refine(Chosen& memory);
+  void try_bouc_wen(Chosen& memory);
   void take_dominant_spring();
   void try_linear(bool& added);
   void try_mass();
@@ -78,6 +84,7 @@ class RigSearch {
   void count_noise(RigExplanation& out) const;
   [[nodiscard]] bool filtered() const;
   void describe(RigModel& model, const Judged& judged, const ColumnSet& more) const;
+  void describe_bouc_wen(Chosen& chosen, const Estimate& first) const;
   void describe_bank(Chosen& chosen, const Judged& now) const;
   void describe_small(Chosen& chosen, const Estimate& first) const;
   void describe_sides(Chosen& chosen, const Judged& now, const ColumnSet& set) const;
@@ -88,8 +95,9 @@ class RigSearch {
   RigLibrary library_;
   std::unique_ptr<RigEvidence> evidence_;
   std::vector<Chosen> chosen_;
-  std::vector<BankElement> bank_;  ///< in use
-  bool base_friction_left_{true};  ///< the base's friction stays beside the bank
+  std::vector<BankElement> bank_;    ///< in use
+  std::optional<BoucWen> bouc_wen_;  ///< in the place of a bank
+  bool base_friction_left_{true};    ///< the base's friction stays beside the bank
   bool spring_added_{false};
   bool mass_added_{false};
   std::vector<std::string> notes_;

@@ -17,6 +17,7 @@ constexpr double kSignificant = 3.0;
 constexpr double kClearMemory = 0.2;
 constexpr double kBetter = 0.85;  // of what the best column leaves
 constexpr double kOverFloor = 1.1;
+constexpr double kMemoryToo = 0.5;
 constexpr double kResolved = 0.03;
 constexpr double kStepPlace = 0.029;  // of the record: a tenth, evenly spread
 
@@ -135,8 +136,16 @@ std::optional<RigTrial> RigSearch::best_trial(double before_nmse) const {
 bool RigSearch::is_better(const RigTrial& trial, const std::vector<Ranked>& order) const {
   if (trial.gain < kLeastGain || trial.t < kSignificant) return false;
   const RigFit& other = order.front().fit;
-  return trial.fit.held_out_nmse < kBetter * other.held_out_nmse &&
-         block_t(other, trial.fit) > kSignificant;
+  if (trial.fit.held_out_nmse > kBetter * other.held_out_nmse ||
+      block_t(other, trial.fit) < kSignificant)
+    return false;
+  // What memory rounds, a delay or a mode rounds too: its smallest form is too rough to tell.
+  const bool memory = std::any_of(order.begin(), order.end(), [&](const Ranked& r) {
+    return is_memory(r.candidate->effect) && r.gain > kMemoryToo * trial.gain;
+  });
+  if (!memory) return true;
+  const auto smooth = best_bouc_wen(records_, trial_base(), scale_.deflection_m);
+  return !smooth || trial.fit.held_out_nmse < kBetter * smooth->fit.held_out_nmse;
 }
 
 /// An inertia force is no effect that a damper lacks: effects are looked for beside it. A late
