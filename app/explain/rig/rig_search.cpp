@@ -16,6 +16,8 @@ namespace {
 constexpr double kNeeded = 0.01;  // loss without it that keeps an effect
 constexpr std::size_t kMostSteps = 4;
 constexpr int kWidthRounds = 3;
+constexpr double kWidestOfAll = 0.9;  // of the speed's rms
+constexpr double kClearlyWider = 0.9;
 constexpr double kRichRidge = 1e-2;
 constexpr double kUntouched = 0.95;
 constexpr double kDominant = 0.5;  // of the base's error, that a spring takes
@@ -134,8 +136,30 @@ void RigSearch::take_dominant_spring() {
                   std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
 }
 
+/// Where the widest law of friction is the best, still wider ones, which are hardly another thing
+/// than viscous damping, have to be clearly better.
+void RigSearch::widen() {
+  if (!library_.base_friction || !base_friction_left_) return;
+  const ColumnSet beside = joined(chosen_columns(), {library_.spring, library_.offset});
+  const Judged now = judge(beside);
+  const auto width_of = [&](std::size_t i) {
+    return library_.columns[static_cast<std::size_t>(library_.friction[i])].a;
+  };
+  for (std::size_t i = 0; i < library_.friction.size(); ++i)
+    if (!now.fit.ok || width_of(i) > width_of(now.width)) return;
+  const std::size_t before = library_.friction.size();
+  for (const double a :
+       ratios(width_of(now.width), kWidestOfAll * scale_.velocity_mps, kFrictionWidthRatio))
+    library_.friction.push_back(
+        library_.add({RigColumn::Kind::kSign, kFrictionWidthRatio * a, 0.0}));
+  evidence_ = std::make_unique<RigEvidence>(library_.columns, records_);
+  if (judge(beside).fit.held_out_nmse > kClearlyWider * now.fit.held_out_nmse)
+    library_.friction.resize(before);
+}
+
 /// A smooth law of friction between two widths of the grid would leave what looks like an effect.
 void RigSearch::refine_width() {
+  widen();
   double ratio = kFrictionWidthRatio;
   for (int round = 0; round < kWidthRounds; ++round) {
     if (!library_.base_friction || !base_friction_left_) return;

@@ -80,6 +80,7 @@ class RigSearch {
   void take_dominant_spring();
   void try_linear(bool& added);
   void try_mass();
+  void widen();
   void refine_width();
   void count_noise(RigExplanation& out) const;
   [[nodiscard]] bool filtered() const;
