@@ -10,12 +10,12 @@
 #include <random>
 #include <string>
 
-#include "app/explain/rig/explain_rig.hpp"
-#include "app/identify/recognised_columns.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
+
+using dampline::testing::value_of;
 
 constexpr double kMassKg = 1.7;
 constexpr double kViscous = 6.0;
@@ -87,19 +87,11 @@ std::string record(const Law& law, const Hysteresis& hysteresis = {}) {
 
 RigExplanation explained(const Law& law, const std::string& inertia = "identify",
                          const Hysteresis& hysteresis = {}) {
-  const dampline::testing::TemporaryFile file{record(law, hysteresis), ".csv"};
   Config config;
   config.model.base = {"viscous"};
   config.model.inertia = inertia;
   config.model.stiffness = "identify";
-  const RecognisedColumns seen = recognise_columns(config, {file.path(), false});
-  return explain_rig(seen.config, {{file.path()}, {}, "", false});
-}
-
-double value_of(const RigExplanation& found, const std::string& name) {
-  for (const auto& p : found.final.parameters)
-    if (p.name == name) return p.value;
-  return std::nan("");
+  return dampline::testing::explained(record(law, hysteresis), config);
 }
 
 void expect_the_rest(const RigExplanation& found) {

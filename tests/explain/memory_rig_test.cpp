@@ -11,19 +11,20 @@
 #include <random>
 #include <string>
 
-#include "app/explain/rig/explain_rig.hpp"
-#include "app/identify/recognised_columns.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
+
+using dampline::testing::explained;
+using dampline::testing::value_of;
 
 constexpr double kForceN = 1800.0;
 
 /// The friction's next value, of -1 ... 1, after a step of the deflection.
 using Friction = std::function<double(double step_m)>;
 
-RigExplanation explained(const Friction& friction) {
+std::string record_of(const Friction& friction) {
   std::mt19937_64 random{17};
   std::normal_distribution<double> noise;
   constexpr int kFine = 40;
@@ -41,11 +42,7 @@ RigExplanation explained(const Friction& friction) {
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t, x + 2e-7 * noise(random),
                         kForceN * level + 24e3 * v + 18.0 * noise(random));
   }
-  const dampline::testing::TemporaryFile file{text, ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
-  const RecognisedColumns seen = recognise_columns(config, {file.path(), false});
-  return explain_rig(seen.config, {{file.path()}, {}, "", false});
+  return text;
 }
 
 void expect_presliding(const RigExplanation& found) {
@@ -56,27 +53,19 @@ void expect_presliding(const RigExplanation& found) {
 
 TEST(MemoryOfOneTone, OfDahlIsFoundWithItsTravel) {
   double z = 0.0;
-  const RigExplanation found = explained([&](double step_m) {
+  const RigExplanation found = explained(record_of([&](double step_m) {
     z += step_m / 0.0017 * (1.0 - z * (step_m < 0.0 ? -1.0 : 1.0));
     return z;
-  });
+  }));
   expect_presliding(found);
-  for (const auto& p : found.final.parameters) {
-    if (p.name == "presliding_hysteresis_travel") {
-      EXPECT_NEAR(p.value, 0.0017, 0.02 * 0.0017);
-    }
-    if (p.name == "presliding_hysteresis_force") {
-      EXPECT_NEAR(p.value, kForceN, 0.02 * kForceN);
-    }
-    if (p.name == "viscous") {
-      EXPECT_NEAR(p.value, 24e3, 1.2e3);
-    }
-  }
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_travel"), 0.0017, 0.02 * 0.0017);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_force"), kForceN, 0.02 * kForceN);
+  EXPECT_NEAR(value_of(found, "viscous"), 24e3, 1.2e3);
 }
 
 TEST(MemoryOfOneTone, OfManyElementsIsNoSpringAndNoMode) {
   std::array<double, 9> slip{};
-  expect_presliding(explained([&](double step_m) {
+  expect_presliding(explained(record_of([&](double step_m) {
     double sum = 0.0;
     for (std::size_t j = 0; j < slip.size(); ++j) {
       const double travel_m = 0.0009 * (static_cast<double>(j) + 0.6);
@@ -84,7 +73,7 @@ TEST(MemoryOfOneTone, OfManyElementsIsNoSpringAndNoMode) {
       sum += slip[j];
     }
     return sum / static_cast<double>(slip.size());
-  }));
+  })));
 }
 
 }  // namespace

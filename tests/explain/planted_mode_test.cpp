@@ -10,12 +10,13 @@
 #include <random>
 #include <string>
 
-#include "app/explain/rig/explain_rig.hpp"
 #include "app/explain/rig/rig_mode.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
+
+using dampline::testing::parameter;
 
 constexpr double kRateHz = 400.0;
 constexpr double kLengthS = 40.0;
@@ -109,16 +110,7 @@ Force with_mass(double kg) {
 RigExplanation explained(const Force& force, std::uint64_t seed, double late_s = 0.0) {
   const dampline::testing::TemporaryFile fitted{record_of(force, seed, late_s), ".csv"};
   const dampline::testing::TemporaryFile other{record_of(force, seed + 1, late_s), ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
-  return explain_rig(config, {{fitted.path()}, {other.path()}, "", false});
-}
-
-Parameter parameter(const RigExplanation& found, const std::string& name) {
-  for (const Parameter& p : found.final.parameters)
-    if (p.name == name) return p;
-  ADD_FAILURE() << "no " << name << "\n" << summarize(found);
-  return {name, 0.0, 0.0, ""};
+  return explain_rig(dampline::testing::two_terms(), {{fitted.path()}, {other.path()}, "", false});
 }
 
 TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
@@ -195,11 +187,10 @@ TEST(RigNoise, NeedNotBeWhite) {
 }
 
 TEST(RigNoise, IsNotWhatRingsWhereNoModeIsLookedFor) {
-  const dampline::testing::TemporaryFile file{record_of(behind_fixture(23.0, 0.1), 73), ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
+  Config config = dampline::testing::two_terms();
   config.model.candidates = {"offset_force"};
-  const RigExplanation found = explain_rig(config, {{file.path()}, {}, "", false});
+  const RigExplanation found =
+      dampline::testing::explained(record_of(behind_fixture(23.0, 0.1), 73), config);
   EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
 }
 

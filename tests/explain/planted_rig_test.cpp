@@ -11,9 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "app/explain/rig/explain_rig.hpp"
 #include "app/run/evidence_tables.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
@@ -98,11 +97,10 @@ struct Planted {
 
 RigExplanation explained(const Law& law, bool spring, std::uint64_t seed,
                          const std::vector<std::string>& base = {"coulomb", "viscous"}) {
-  const dampline::testing::TemporaryFile file{record_of(law, seed), ".csv"};
   Config config;
   config.model.base = base;
   config.model.stiffness = spring ? "identify" : "auto";
-  return explain_rig(config, {{file.path()}, {}, "", false});
+  return dampline::testing::explained(record_of(law, seed), config);
 }
 
 class NamesOnARig : public ::testing::TestWithParam<Planted> {};
@@ -246,10 +244,7 @@ TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", i / kRateHz, x + 2e-7 * noise(random),
                         12000.0 * x + 9000.0 * v + 3.0 * noise(random));
   }
-  const dampline::testing::TemporaryFile file{text, ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
-  EXPECT_TRUE(explain_rig(config, {{file.path()}, {}, "", false}).steps.empty());
+  EXPECT_TRUE(dampline::testing::explained(text).steps.empty());
 }
 
 TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
@@ -277,10 +272,8 @@ TEST(ARig, IsPredictedFromItsMotionAlone) {
     at = end + 1;
   }
   const dampline::testing::TemporaryFile without{kept, ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
-  const RigExplanation found =
-      explain_rig(config, {{fitted.path()}, {other.path(), without.path()}, "", false});
+  const RigExplanation found = explain_rig(
+      dampline::testing::two_terms(), {{fitted.path()}, {other.path(), without.path()}, "", false});
   ASSERT_EQ(found.validation.size(), 2U);
   EXPECT_LT(found.validation[0].rrse_after, 0.5 * found.validation[0].rrse_before);
   EXPECT_EQ(found.validation[0].predicted_n, found.validation[1].predicted_n);

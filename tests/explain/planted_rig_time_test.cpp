@@ -9,8 +9,7 @@
 #include <random>
 #include <string>
 
-#include "app/explain/rig/explain_rig.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
@@ -37,10 +36,7 @@ RigExplanation explained(const std::function<double(double)>& force_at, std::uin
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t, deflection_at(t) + 2e-7 * noise(random),
                         force_at(t) + 6.0 * noise(random));
   }
-  const dampline::testing::TemporaryFile file{text, ".csv"};
-  Config config;
-  config.model.base = {"coulomb", "viscous"};
-  return explain_rig(config, {{file.path()}, {}, "", false});
+  return dampline::testing::explained(text);
 }
 
 TEST(ForceOutOfStep, IsNamedWithItsDelay) {

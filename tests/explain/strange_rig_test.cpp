@@ -11,13 +11,12 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/explain/rig/explain_rig.hpp"
-#include "app/identify/recognised_columns.hpp"
-#include "tests/drivers/temporary_file.hpp"
+#include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
 namespace {
 
+using dampline::testing::explained;
 using ::testing::HasSubstr;
 
 struct Row {
@@ -59,13 +58,6 @@ std::string table(const std::string& head, fmt::string_view line, double time = 
     out += fmt::format(fmt::runtime(line), time * r.time_s, deflection * r.deflection_m,
                        force * r.force_n);
   return out;
-}
-
-RigExplanation explained(const std::string& text, Config config = {}) {
-  const dampline::testing::TemporaryFile file{text, ".csv"};
-  config.model.base = {"coulomb", "viscous"};
-  const RecognisedColumns seen = recognise_columns(config, {file.path(), false});
-  return explain_rig(seen.config, {{file.path()}, {}, "", false});
 }
 
 std::string error_of(const std::string& text) {
@@ -151,7 +143,7 @@ TEST(AStrangersRig, MayHaveNoTimeWhereItsRateIsGiven) {
   for (const Row& r : rows(uniform()))
     text += fmt::format("{:.10f},{:.6f}\n", r.deflection_m, r.force_n);
   EXPECT_THAT(error_of(text), HasSubstr("sample_rate_hz"));
-  Config config;
+  Config config = dampline::testing::two_terms();
   config.input.sample_rate_hz = 400.0;
   config.input.sample_rate_is_set = true;
   expect_quadratic(explained(text, config));

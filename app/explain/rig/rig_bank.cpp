@@ -20,7 +20,6 @@ constexpr double kPlay =
     0.45;  // share of the build-up below that: free play; a straight one has 0.28
 constexpr double kSmoother = 0.8;  // of what the bank leaves
 constexpr double kFrictionStays = 0.97;
-constexpr double kSlips = 0.1;      // a law that comes to slip has a force
 constexpr double kUndecided = 1.6;  // between the errors of the smallest forms
 
 /// What a bank says in lengths and forces: coming from full slip on one side and moving to full
@@ -159,8 +158,9 @@ void RigSearch::describe_bouc_wen(Chosen& chosen, const Estimate& first) const {
   const double shape_std = bouc_wen_->shape_std;
   auto& out = chosen.step.parameters;
   const double slips = 1.0 + law.b;
-  if (slips > 2.0 * shape_std && slips > kSlips) {
-    const double force_n = first.value * law.a / slips;
+  const double slip_m = bouc_wen_slip_m(law.a, law.b);
+  if (slips > 2.0 * shape_std && slip_m > 0.0) {
+    const double force_n = first.value * slip_m;
     const double share =
         std::hypot(first.std / first.value, travel_std_m / law.a, shape_std / slips);
     out.push_back({"presliding_hysteresis_force", force_n, share * force_n, "N"});

@@ -43,27 +43,23 @@ double between(const Eigen::VectorXd& x, Eigen::Index i, int part, int parts) {
 /// What moves at the start has slipped; what rests, and what never slips, starts from 0.
 double start_of(const Eigen::VectorXd& x, double travel_m, double shape) {
   constexpr double kMoves = 0.3;  // of the rms of the speed
-  constexpr double kSlips = 0.1;
   const Eigen::Index last = x.size() - 1;
-  if (last < 1 || 1.0 + shape < kSlips) return 0.0;
+  if (last < 1) return 0.0;
   const double rms_m =
       std::sqrt((x.tail(last) - x.head(last)).squaredNorm() / static_cast<double>(last));
   const double first_m = x[1] - x[0];
-  return std::abs(first_m) < kMoves * rms_m ? 0.0
-                                            : std::copysign(travel_m / (1.0 + shape), first_m);
+  return std::abs(first_m) < kMoves * rms_m
+             ? 0.0
+             : std::copysign(bouc_wen_slip_m(travel_m, shape), first_m);
 }
 
 /// Every column in turn beside the base; a spring that pushes is no hysteresis.
 void look(const std::vector<RigSeries>& records, const RigTrialBase& base,
           const std::vector<RigColumn>& columns, Best& best) {
   const TrialFits fits{records, base, columns};
-  const auto place = static_cast<Eigen::Index>(base.columns.size());
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    RigFit fit = fits.best({static_cast<Eigen::Index>(c)});
-    if (!fit.ok || !(fit.theta[place] > 0.0)) continue;
-    if (best.fit.ok && fit.held_out_nmse >= best.fit.held_out_nmse) continue;
-    best = {columns[c], std::move(fit)};
-  }
+  auto [place, fit] = fits.best_positive(columns.size());
+  if (fit.ok && !(best.fit.ok && fit.held_out_nmse >= best.fit.held_out_nmse))
+    best = {columns[place], std::move(fit)};
 }
 
 /// A look at the neighbours; whether one of them was clearly better.
@@ -99,6 +95,11 @@ BoucWen with_deviations(const std::vector<RigSeries>& records, const RigTrialBas
 }
 
 }  // namespace
+
+double bouc_wen_slip_m(double travel_m, double shape) {
+  constexpr double kSlips = 0.1;  // a smaller one is not reached within ten travels
+  return 1.0 + shape < kSlips ? 0.0 : travel_m / (1.0 + shape);
+}
 
 Eigen::VectorXd bouc_wen(const Eigen::VectorXd& deflection_m, double travel_m, double shape) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(deflection_m.size());

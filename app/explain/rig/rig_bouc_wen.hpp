@@ -12,6 +12,9 @@ namespace dampline::app {
 [[nodiscard]] Eigen::VectorXd bouc_wen(const Eigen::VectorXd& deflection_m, double travel_m,
                                        double shape);
 
+/// Where it slips, in metres: the largest state; 0 where it never comes to slip.
+[[nodiscard]] double bouc_wen_slip_m(double travel_m, double shape);
+
 struct BoucWen {
   RigColumn column;
   RigFit fit;

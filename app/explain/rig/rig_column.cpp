@@ -131,7 +131,14 @@ void change_over_time(const RigColumn& column, Eigen::VectorXd& values) {
 Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series) {
   Eigen::VectorXd out = steady(column, series);
   if (column.time != RigColumn::Time::kSteady) change_over_time(column, out);
-  if (series.path.hz > 0.0) out = through_mode(out, series.path, series.interval_s);
+  return through_mode(out, series.path, series.interval_s);
+}
+
+Eigen::VectorXd left_of(const RigSeries& series, const std::vector<RigColumn>& columns,
+                        const Eigen::VectorXd& theta) {
+  Eigen::VectorXd out = series.force_n;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    out -= theta[static_cast<Eigen::Index>(c)] * evaluate(columns[c], series);
   return out;
 }
 

@@ -55,6 +55,11 @@ struct RigColumn {
 /// which only rows_of differentiates.
 [[nodiscard]] Eigen::VectorXd evaluate(const RigColumn& column, const RigSeries& series);
 
+/// The force less what the columns make of it.
+[[nodiscard]] Eigen::VectorXd left_of(const RigSeries& series,
+                                      const std::vector<RigColumn>& columns,
+                                      const Eigen::VectorXd& theta);
+
 /// Equations: one per row, a column per regressor and the force as the last. Without kInertia every
 /// `stride`-th sample as it is. With it, everything seen through the same test function (corner
 /// config.corner_hz), which also takes the second derivative; `sample` is each row's centre.

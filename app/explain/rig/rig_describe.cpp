@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/explain/rig/rig_rank.hpp"
 #include "app/explain/rig/rig_search.hpp"
 
 namespace dampline::app {
@@ -99,7 +100,7 @@ void RigSearch::describe_sides(Chosen& c, const Judged& now, const ColumnSet& se
 
 /// The change over the record, of the mean or of the value before it.
 void RigSearch::describe_drift(Chosen& c, const Judged& now, const ColumnSet& set) const {
-  const auto at = std::find(set.begin(), set.end(), c.candidate.columns.front()) - set.begin();
+  const Eigen::Index at = place_of(set, c.candidate.columns.front());
   const RigColumn& drifting =
       library_.columns[static_cast<std::size_t>(set[static_cast<std::size_t>(at)])];
   const double change = now.fit.theta[at];
@@ -134,7 +135,7 @@ void RigSearch::describe_steps(const Judged& now) {
       describe_drift(c, now, set);
       continue;
     }
-    const auto at = std::find(set.begin(), set.end(), c.candidate.columns.front()) - set.begin();
+    const Eigen::Index at = place_of(set, c.candidate.columns.front());
     const Estimate first{now.fit.theta[at], std::sqrt(std::max(now.fit.covariance(at, at), 0.0))};
     if (column_of(c).kind == RigColumn::Kind::kBoucWen)
       describe_bouc_wen(c, first);

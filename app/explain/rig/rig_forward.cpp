@@ -81,7 +81,7 @@ std::vector<RigSearch::Ranked> RigSearch::rank() const {
     const Judged with = judge(joined(both, c.columns));
     if (!with.fit.ok || !reference.fit.ok) continue;
     const ColumnSet set = set_of(joined(both, c.columns), with.width);
-    const auto at = std::find(set.begin(), set.end(), c.columns.front()) - set.begin();
+    const Eigen::Index at = place_of(set, c.columns.front());
     if (c.sign * with.fit.theta[at] < 0.0) continue;
     if (!is_memory(c.effect) && has_driving_friction(with.fit)) continue;
     const double gain = 1.0 - with.fit.held_out_nmse / reference.fit.held_out_nmse;
@@ -120,8 +120,8 @@ RigFit RigSearch::best_with(const RigCandidate& first) const {
     const Judged with = judge(joined(both, c.columns));
     if (!with.fit.ok) continue;
     const ColumnSet set = set_of(joined(both, c.columns), with.width);
-    const auto at = std::find(set.begin(), set.end(), c.columns.front()) - set.begin();
-    const auto at_first = std::find(set.begin(), set.end(), first.columns.front()) - set.begin();
+    const Eigen::Index at = place_of(set, c.columns.front());
+    const Eigen::Index at_first = place_of(set, first.columns.front());
     if (c.sign * with.fit.theta[at] < 0.0 || first.sign * with.fit.theta[at_first] < 0.0) continue;
     if (!out.ok || with.fit.held_out_nmse < out.held_out_nmse) out = with.fit;
   }

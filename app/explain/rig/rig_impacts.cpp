@@ -62,9 +62,8 @@ int bin_of(double value, double scale) {
                     kBins - 1);
 }
 
-/// About a reversal the sign of the velocity is uncertain, and with it the friction.
 bool is_near_reversal(const RigSeries& record, Eigen::Index at) {
-  const Eigen::Index near = 3 + record.config.velocity_half_width;
+  const Eigen::Index near = reach_of_reversal(record);
   const Eigen::Index from = std::max<Eigen::Index>(at - near, 0);
   const Eigen::Index to = std::min(at + near, record.size() - 1);
   const auto part = record.velocity_mps.segment(from, to - from + 1);

@@ -73,6 +73,7 @@ void start_along(const Eigen::VectorXd& x, double v, const RigMode& mode, double
 }  // namespace
 
 Eigen::VectorXd through_mode(const Eigen::VectorXd& u, const RigMode& mode, double interval_s) {
+  if (!(mode.hz > 0.0)) return u;
   Resonance resonance{mode, interval_s};
   Eigen::VectorXd out{u.size()};
   for (Eigen::Index i = 0; i < u.size(); ++i) {

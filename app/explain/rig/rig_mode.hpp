@@ -12,6 +12,7 @@ struct RigMode {
 
 /// What a mass on a spring makes of a force that acts on it, seen in the spring:
 ///   y'' + 2 D w y' + w^2 y = w^2 u, at rest at the first sample; u straight between samples.
+/// Without a mode it is u.
 [[nodiscard]] Eigen::VectorXd through_mode(const Eigen::VectorXd& u, const RigMode& mode,
                                            double interval_s);
 

@@ -113,26 +113,14 @@ std::optional<RigTrial> try_attached(const std::vector<RigSeries>& records,
   const double mean = mean_hz(records);
   const double highest = std::min(highest_hz(records), kFastest * mean);
   const std::vector<double> grid = ratios(kSlowest * mean, highest, kAttachedRatio);
-  std::vector<RigMode> modes;
   std::vector<RigColumn> columns;
-  for (const double damping : kAttachedDampings) {
-    for (const double hz : grid) {
-      modes.push_back({hz, damping});
-      columns.push_back({Kind::kAttached, hz, damping});
-    }
-  }
+  for (const double damping : kAttachedDampings)
+    for (const double hz : grid) columns.push_back({Kind::kAttached, hz, damping});
   const TrialFits fits{records, base, columns};
   const RigFit without = fits.best();
-  const auto place = static_cast<Eigen::Index>(base.columns.size());
-  Found best;
-  for (std::size_t m = 0; m < modes.size(); ++m) {
-    RigFit fit = fits.best({static_cast<Eigen::Index>(m)});
-    if (!fit.ok || !(fit.theta[place] > 0.0)) continue;
-    if (best.fit.ok && fit.held_out_nmse >= best.fit.held_out_nmse) continue;
-    best = {modes[m], std::move(fit)};
-  }
-  if (!best.fit.ok || !without.ok || best.fit.held_out_nmse >= without.held_out_nmse)
-    return std::nullopt;
+  auto [place, fit] = fits.best_positive(columns.size());
+  if (!fit.ok || !without.ok || fit.held_out_nmse >= without.held_out_nmse) return std::nullopt;
+  Found best{{columns[place].a, columns[place].b}, std::move(fit)};
   refine([&](const RigMode& m) { return fit_attached(records, base, m); }, kAttachedRatio, highest,
          best);
   RigTrial out = trial_of(best, without);
@@ -175,9 +163,7 @@ RigMode mode_deviation(const std::vector<RigSeries>& records, const RigTrialBase
   };
   const RigFit middle = fit_of(trial.mode);
   const auto deviation = [&](const RigMode& low_mode, const RigMode& high_mode, double step) {
-    const RigFit low = fit_of(low_mode);
-    const RigFit high = fit_of(high_mode);
-    return low.ok && middle.ok && high.ok ? deviation_of(low, middle, high, step) : step;
+    return deviation_of(fit_of(low_mode), middle, fit_of(high_mode), step);
   };
   const double d_hz = kStep * trial.mode.hz;
   const double d_damping = 0.2 * trial.mode.damping;

@@ -15,11 +15,9 @@ constexpr double kSteady = 1.8;
 constexpr double kUnmoved = 1.4;
 constexpr std::size_t kFewest = 500;
 
-constexpr Eigen::Index kNearReversal = 3;  // samples, beside the derivative's reach
-
 /// Samples whose sign of v is certain and which took part in the fit.
 std::vector<Eigen::Index> certain(const RigSeries& record) {
-  const Eigen::Index near = kNearReversal + record.config.velocity_half_width;
+  const Eigen::Index near = reach_of_reversal(record);
   std::vector<Eigen::Index> out;
   Eigen::Index turned = -near - 1;
   for (Eigen::Index i = 1; i < record.size(); ++i) {
@@ -30,13 +28,6 @@ std::vector<Eigen::Index> certain(const RigSeries& record) {
     const bool left_out = record.left_out.size() == record.size() && record.left_out[i] > 0.0;
     if (i > turned + near && !left_out) out.push_back(i);
   }
-  return out;
-}
-
-Eigen::VectorXd left_of(const RigSeries& record, const RigModel& model) {
-  Eigen::VectorXd out = record.force_n;
-  for (std::size_t c = 0; c < model.columns.size(); ++c)
-    out -= model.fit.theta[static_cast<Eigen::Index>(c)] * evaluate(model.columns[c], record);
   return out;
 }
 
@@ -81,7 +72,7 @@ RigLeft what_is_left(const std::vector<RigSeries>& records, const RigModel& mode
   for (const RigSeries& record : records) {
     const std::vector<Eigen::Index> rows = certain(record);
     if (rows.size() < kFewest) return {};
-    const Eigen::VectorXd left = left_of(record, model)(rows);
+    const Eigen::VectorXd left = left_of(record, model.columns, model.fit.theta)(rows);
     const Eigen::VectorXd order = Eigen::VectorXd::LinSpaced(left.size(), 0.0, 1.0);
     const Eigen::VectorXd speed = record.velocity_mps.cwiseAbs()(rows);
     const Eigen::VectorXd travel = travel_since_reversal(record)(rows);

@@ -21,6 +21,11 @@ namespace dampline::app {
   return a;
 }
 
+/// Where a column of the set stands in theta.
+[[nodiscard]] inline Eigen::Index place_of(const ColumnSet& set, Eigen::Index column) {
+  return std::find(set.begin(), set.end(), column) - set.begin();
+}
+
 [[nodiscard]] inline bool is_memory(const std::string& effect) {
   return effect == "backlash" || effect == "presliding_hysteresis";
 }

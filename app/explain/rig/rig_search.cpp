@@ -119,7 +119,7 @@ void RigSearch::try_mass() {
   try_linear(mass_added_);
   const Judged now = judge(chosen_columns());
   const ColumnSet set = set_of(chosen_columns(), now.width);
-  const auto at = std::find(set.begin(), set.end(), library_.mass) - set.begin();
+  const Eigen::Index at = place_of(set, library_.mass);
   mass_added_ = mass_added_ && now.fit.theta[at] > 0.0;
 }
 

@@ -32,6 +32,12 @@ struct RigSeries {
   [[nodiscard]] Eigen::Index size() const { return force_n.size(); }
 };
 
+/// Samples on either side of a reversal where the sign of the velocity is uncertain, and with it
+/// the friction.
+[[nodiscard]] inline Eigen::Index reach_of_reversal(const RigSeries& series) {
+  return 3 + series.config.velocity_half_width;
+}
+
 /// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
 /// naming the file, what was found and what was expected.
 [[nodiscard]] RigSeries read_rig_series(const std::string& path, const Config& config,

@@ -35,6 +35,10 @@ bool is_resolved(const RigSeries& record) {
   return record.config.velocity_measured || curved < kResolved * kResolved * steps;
 }
 
+bool is_clearly_better(const RigFit& fit, const RigFit& other) {
+  return fit.held_out_nmse < kBetter * other.held_out_nmse && block_t(other, fit) > kSignificant;
+}
+
 }  // namespace
 
 /// Impacts come first: they are in every column's way. What is judged later is judged without the
@@ -53,11 +57,9 @@ void RigSearch::leave_impacts_out() {
   const std::vector<RigColumn> columns =
       columns_of(set_of({library_.spring, library_.offset}, rough.width));
   std::vector<Eigen::VectorXd> left_n;
-  for (const RigSeries& record : records_) {
-    left_n.push_back(record.force_n);
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      left_n.back() -= rough.fit.theta[static_cast<Eigen::Index>(c)] * evaluate(columns[c], record);
-  }
+  left_n.reserve(records_.size());
+  for (const RigSeries& record : records_)
+    left_n.push_back(left_of(record, columns, rough.fit.theta));
   const RigImpacts impacts = find_impacts(records_, left_n);
   if (!impacts.found()) return;
   std::vector<RigSeries> kept = records_;
@@ -108,9 +110,7 @@ void RigSearch::prefer_mode(std::optional<RigTrial>& best) const {
   const RigTrialBase base = trial_base();
   for (const auto& mode : {try_attached(records_, base), try_path(records_, base)}) {
     if (!mode) continue;
-    const bool better = !best || (mode->fit.held_out_nmse < kBetter * best->fit.held_out_nmse &&
-                                  block_t(best->fit, mode->fit) > kSignificant);
-    if (better) best = mode;
+    if (!best || is_clearly_better(mode->fit, best->fit)) best = mode;
   }
 }
 
@@ -135,10 +135,7 @@ std::optional<RigTrial> RigSearch::best_trial(double before_nmse) const {
 /// Clearly better than every column: many things look a little like a delay.
 bool RigSearch::is_better(const RigTrial& trial, const std::vector<Ranked>& order) const {
   if (trial.gain < kLeastGain || trial.t < kSignificant) return false;
-  const RigFit& other = order.front().fit;
-  if (trial.fit.held_out_nmse > kBetter * other.held_out_nmse ||
-      block_t(other, trial.fit) < kSignificant)
-    return false;
+  if (!is_clearly_better(trial.fit, order.front().fit)) return false;
   // What memory rounds, a delay or a mode rounds too: its smallest form is too rough to tell.
   const bool memory = std::any_of(order.begin(), order.end(), [&](const Ranked& r) {
     return is_memory(r.candidate->effect) && r.gain > kMemoryToo * trial.gain;
@@ -158,28 +155,23 @@ bool RigSearch::take_mass(const std::vector<Ranked>& order, const std::optional<
   const Judged with = judge(joined(both, mass.columns));
   if (!without.fit.ok || !with.fit.ok) return false;
   const ColumnSet set = set_of(joined(both, mass.columns), with.width);
-  const auto at = std::find(set.begin(), set.end(), library_.mass) - set.begin();
+  const Eigen::Index at = place_of(set, library_.mass);
   if (!(with.fit.theta[at] > 0.0)) return false;
   RigTrial as_trial;
   as_trial.fit = with.fit;
   as_trial.gain = 1.0 - with.fit.held_out_nmse / without.fit.held_out_nmse;
   as_trial.t = block_t(without.fit, with.fit);
   if (!is_better(as_trial, order)) return false;
-  const auto clearly = [](const RigFit& better, const RigFit& worse) {
-    return better.held_out_nmse < kBetter * worse.held_out_nmse &&
-           block_t(worse, better) > kSignificant;
-  };
-  if (trial && trial->effect == "time_skew" && !clearly(with.fit, trial->fit)) return false;
-  if (trial && clearly(trial->fit, with.fit)) return false;
+  if (trial && trial->effect == "time_skew" && !is_clearly_better(with.fit, trial->fit))
+    return false;
+  if (trial && is_clearly_better(trial->fit, with.fit)) return false;
   if (!passes({&mass, as_trial.gain, as_trial.t, with.fit, false}, without.fit.held_out_nmse))
     return false;
   mass_added_ = true;
   notes_.push_back(fmt::format(
       "An inertia force of {:.4g} kg, which the base model does not have, was added first: "
-      "held-out "
-      "rrse {:.3f} -> {:.3f}. A mass on a spring whose resonance lies far above the motion looks "
-      "the "
-      "same. To have it in the base: [model] inertia = \"identify\"",
+      "held-out rrse {:.3f} -> {:.3f}. A mass on a spring whose resonance lies far above the "
+      "motion looks the same. To have it in the base: [model] inertia = \"identify\"",
       with.fit.theta[at], std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
   return true;
 }

@@ -51,6 +51,18 @@ RigFit TrialFits::best(const ColumnSet& more) const {
   return out;
 }
 
+TrialFits::Best TrialFits::best_positive(std::size_t count) const {
+  const auto place = static_cast<Eigen::Index>(base_.columns.size());
+  Best out;
+  for (std::size_t c = 0; c < count; ++c) {
+    RigFit now = best({static_cast<Eigen::Index>(c)});
+    if (!now.ok || !(now.theta[place] > 0.0)) continue;
+    if (out.fit.ok && now.held_out_nmse >= out.fit.held_out_nmse) continue;
+    out = {c, std::move(now)};
+  }
+  return out;
+}
+
 std::optional<RigColumn> TrialFits::friction() const {
   std::optional<RigColumn> out;
   double least = 0.0;
@@ -178,11 +190,11 @@ double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase&
   const RigFit low = skewed_fit(records, base, skew_s - step_s);
   const RigFit middle = skewed_fit(records, base, skew_s);
   const RigFit high = skewed_fit(records, base, skew_s + step_s);
-  if (!low.ok || !middle.ok || !high.ok) return step_s;
   return deviation_of(low, middle, high, step_s);
 }
 
 double deviation_of(const RigFit& low, const RigFit& middle, const RigFit& high, double step) {
+  if (!low.ok || !middle.ok || !high.ok) return step;
   const double curve = high.held_out_nmse - 2.0 * middle.held_out_nmse + low.held_out_nmse;
   if (!(curve > 0.0)) return step;
   const auto n = static_cast<double>(middle.block_error.size());

@@ -23,6 +23,13 @@ class TrialFits {
   /// The best fit of all ways to write sign v. `more`: numbers of the columns beside the base; they
   /// follow the base's in theta.
   [[nodiscard]] RigFit best(const ColumnSet& more = {}) const;
+  struct Best {
+    std::size_t place{0};  ///< of the column beside the base
+    RigFit fit;            ///< not ok where there is none
+  };
+  /// Of the first `count` columns beside the base, each in turn: the one that leaves least with a
+  /// coefficient above 0.
+  [[nodiscard]] Best best_positive(std::size_t count) const;
   /// The way to write sign v that fits best; nothing where the base has none.
   [[nodiscard]] std::optional<RigColumn> friction() const;
 
@@ -59,7 +66,8 @@ struct RigTrial {
 /// Standard deviation of a skew, by the jackknife over the blocks.
 [[nodiscard]] double skew_deviation(const std::vector<RigSeries>& records, const RigTrialBase& base,
                                     double skew_s);
-/// Standard deviation of what one parameter is, from the fits a step below it, at it and above.
+/// Standard deviation of what one parameter is, from the fits a step below it, at it and above; the
+/// step where one of them failed.
 [[nodiscard]] double deviation_of(const RigFit& low, const RigFit& middle, const RigFit& high,
                                   double step);
 

@@ -7,17 +7,14 @@
 
 #include "app/explain/rig/rig_trials.hpp"
 #include "dampline/rig/rig_motion.hpp"
+#include "dampline/rig/white_noise.hpp"
 #include "sim_hw/random.hpp"
 
 namespace dampline::app {
 namespace {
 
-// Median of |x| over sigma for a Gaussian, times the gains sqrt(70) and sqrt(12870).
-constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);
-constexpr double kEighthToSigma = 1.0 / (0.67449 * 113.4460);
-constexpr double kOfMotion = 0.8;      // eighth differences have less where the fourth have motion
-constexpr double kWhole = 0.02;        // a difference is a whole number of steps within this
-constexpr double kMostlyWhole = 0.98;  // of the differences
+constexpr double kWhole = 0.02;            // a difference is a whole number of steps within this
+constexpr double kMostlyWhole = 0.98;      // of the differences
 constexpr double kFewestStepShare = 1e-6;  // of the range: a finer step is how numbers are printed
 constexpr std::uint64_t kSeed = 1987;
 
@@ -91,8 +88,7 @@ Eigen::VectorXd force_of(const RigLaw& law, const RigSeries& motion) {
     const Eigen::VectorXd values = column.kind == RigColumn::Kind::kInertia
                                        ? derivative(motion.velocity_mps, motion.interval_s)
                                        : Eigen::VectorXd{motion.velocity_mps.array().sign()};
-    out += theta *
-           (motion.path.hz > 0.0 ? through_mode(values, motion.path, motion.interval_s) : values);
+    out += theta * through_mode(values, motion.path, motion.interval_s);
   }
   return out;
 }
@@ -181,15 +177,12 @@ double white_noise(const Eigen::VectorXd& values) {
   std::vector<double> fourth;
   std::vector<double> eighth;
   for (Eigen::Index i = 8; i < values.size(); ++i) {
-    const auto even = [&](Eigen::Index j) { return values[i - 4 - j] + values[i - 4 + j]; };
-    fourth.push_back(std::abs(even(2) - 4.0 * even(1) + 3.0 * even(0)));
-    eighth.push_back(
-        std::abs(even(4) - 8.0 * even(3) + 28.0 * even(2) - 56.0 * even(1) + 35.0 * even(0)));
+    const auto about = [&](int j) { return values[i - 4 + j]; };
+    fourth.push_back(std::abs(fourth_difference(about)));
+    eighth.push_back(std::abs(eighth_difference(about)));
   }
   if (fourth.empty()) return 0.0;
-  const double by_fourth = kFourthToSigma * median_of(fourth);
-  const double by_eighth = kEighthToSigma * median_of(eighth);
-  return std::max(by_eighth < kOfMotion * by_fourth ? by_eighth : by_fourth,
+  return std::max(white_sigma(median_of(fourth), median_of(eighth)),
                   resolution_of(values) / std::sqrt(12.0));
 }
 

@@ -48,11 +48,6 @@ class Explainer {
   };
   [[nodiscard]] Prediction predict(const Diagnosis& other, const Explanation& by) noexcept;
 
-  /// What a complete model leaves, from the twin: a record of the base law simulated on the same
-  /// input, with the sensors' noise and resolution, through the same Identifier and a Diagnosis of
-  /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
-  /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
-  /// rows.
   /// How late a channel of a record still is beside a model's other effects, s. Precondition: the
   /// Diagnosis has the grids of the model.
   [[nodiscard]] Estimate lateness(const Diagnosis& diagnosis, const Model& model,
@@ -65,6 +60,11 @@ class Explainer {
     /// leaves of it.
     const Diagnosis* remembering{nullptr};
   };
+  /// What a complete model leaves, from the twin: a record of the base law simulated on the same
+  /// input, with the sensors' noise and resolution, through the same Identifier and a Diagnosis of
+  /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
+  /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
+  /// rows.
   bool apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& explanation) noexcept;
 
  private:

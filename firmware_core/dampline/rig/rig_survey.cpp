@@ -7,16 +7,11 @@
 
 #include "dampline/rig/rig_motion.hpp"
 #include "dampline/rig/rig_test_function.hpp"
+#include "dampline/rig/white_noise.hpp"
 
 namespace dampline {
 namespace {
 
-/// Median of |x| over sigma for a Gaussian, times the gain sqrt(70) of fourth differences.
-constexpr double kFourthToSigma = 1.0 / (0.67449 * 8.36660);
-/// The same for the gain sqrt(12870) of eighth differences.
-constexpr double kEighthToSigma = 1.0 / (0.67449 * 113.4460);
-/// Eighth differences have less than this share of the fourth's where motion is in the fourth.
-constexpr double kOfMotion = 0.8;
 constexpr std::int64_t kBlocksWanted = 80;
 /// Corners as fractions of the rate, within the test function's limits.
 constexpr double kFastest = 6.5;
@@ -26,10 +21,6 @@ constexpr double kVelocityErrorShare = 0.01;
 
 /// Samples between the two ends of a difference.
 constexpr std::size_t samples_of(std::size_t span) noexcept { return std::size_t{1} << span; }
-
-double fourth(double a, double b, double c, double d, double e) noexcept {
-  return std::abs(a - 4.0 * b + 6.0 * c - 4.0 * d + e);
-}
 
 bool finite(const RigSample& sample, bool velocity_measured) noexcept {
   return std::isfinite(sample.deflection_m) && std::isfinite(sample.force_n) &&
@@ -61,25 +52,21 @@ void RigSurvey::update(const RigSample& sample) noexcept {
 void RigSurvey::take_differences() noexcept {
   const double step = std::abs(ago(0).deflection_m - ago(1).deflection_m);
   if (step > 0.0 && (resolution_m_ == 0.0 || step < resolution_m_)) resolution_m_ = step;
-  deflection_fourth_m_.add(fourth(ago(0).deflection_m, ago(1).deflection_m, ago(2).deflection_m,
-                                  ago(3).deflection_m, ago(4).deflection_m));
-  deflection_eighth_m_.add(eighth());
+  const auto about = [this](int j) -> const RigSample& {
+    return ago(static_cast<std::size_t>(j + 4));
+  };
+  const auto deflection_m = [&](int j) { return about(j).deflection_m; };
+  const auto velocity_mps = [&](int j) { return about(j).velocity_mps; };
+  deflection_fourth_m_.add(std::abs(fourth_difference(deflection_m)));
+  deflection_eighth_m_.add(std::abs(eighth_difference(deflection_m)));
   ++velocities_;
   if (velocity_measured_) {
-    velocity_fourth_mps_.add(fourth(ago(0).velocity_mps, ago(1).velocity_mps, ago(2).velocity_mps,
-                                    ago(3).velocity_mps, ago(4).velocity_mps));
+    velocity_fourth_mps_.add(std::abs(fourth_difference(velocity_mps)));
     return take_speed(0, ago(0).velocity_mps);
   }
   for (std::size_t i = 0; i < kSpans; ++i)
     take_speed(i, (ago(0).deflection_m - ago(samples_of(i)).deflection_m) * rate_hz_ /
                       static_cast<double>(samples_of(i)));
-}
-
-double RigSurvey::eighth() const noexcept {
-  constexpr std::array<double, 9> kBinomial{1, -8, 28, -56, 70, -56, 28, -8, 1};
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kBinomial.size(); ++i) sum += kBinomial[i] * ago(i).deflection_m;
-  return std::abs(sum);
 }
 
 void RigSurvey::take_speed(std::size_t span, double velocity_mps) noexcept {
@@ -109,10 +96,8 @@ std::size_t RigSurvey::longest_faithful_span() const noexcept {
 }
 
 double RigSurvey::deflection_noise_m() const noexcept {
-  const double rounding = resolution_m_ / std::sqrt(12.0);
-  const double fourth = kFourthToSigma * deflection_fourth_m_.quantile(0.5);
-  const double eighth = kEighthToSigma * deflection_eighth_m_.quantile(0.5);
-  return std::max(rounding, eighth < kOfMotion * fourth ? eighth : fourth);
+  return std::max(resolution_m_ / std::sqrt(12.0), white_sigma(deflection_fourth_m_.quantile(0.5),
+                                                               deflection_eighth_m_.quantile(0.5)));
 }
 
 double RigSurvey::velocity_rms_mps() const noexcept {
@@ -161,7 +146,7 @@ int RigSurvey::choose_half_width(const RigConfig& config) const noexcept {
 }
 
 double RigSurvey::velocity_error_mps(const RigConfig& config) const noexcept {
-  if (velocity_measured_) return kFourthToSigma * velocity_fourth_mps_.quantile(0.5);
+  if (velocity_measured_) return sigma_of_fourth(velocity_fourth_mps_.quantile(0.5));
   if (config.velocity_sharp)
     return DerivativeWindow::sharp(1.0 / rate_hz_).noise_gain() * deflection_noise_m();
   return derivative_error_mps(config.velocity_half_width);

@@ -47,7 +47,6 @@ class RigSurvey {
   static constexpr std::size_t kSpans = 5;  ///< differences over 1, 2, 4, 8 and 16 samples
 
   void take_differences() noexcept;
-  [[nodiscard]] double eighth() const noexcept;
   void take_speed(std::size_t span, double velocity_mps) noexcept;
   [[nodiscard]] double mean_square_mps2(std::size_t span) const noexcept;
   [[nodiscard]] double signal_mps2(std::size_t span) const noexcept;

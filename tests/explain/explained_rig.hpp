@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "app/explain/rig/explain_rig.hpp"
+#include "app/identify/recognised_columns.hpp"
+#include "tests/drivers/temporary_file.hpp"
+
+namespace dampline::testing {
+
+/// Dry friction and viscous damping, nothing else declared.
+inline app::Config two_terms() {
+  app::Config out;
+  out.model.base = {"coulomb", "viscous"};
+  return out;
+}
+
+/// What `dampline explain` finds in a rig's CSV text.
+inline app::RigExplanation explained(const std::string& text,
+                                     const app::Config& config = two_terms()) {
+  const TemporaryFile file{text, ".csv"};
+  const app::RecognisedColumns seen = app::recognise_columns(config, {file.path(), false});
+  return app::explain_rig(seen.config, {{file.path()}, {}, "", false});
+}
+
+/// A parameter of the final model; a failure where it has none of this name.
+inline app::Parameter parameter(const app::RigExplanation& found, const std::string& name) {
+  for (const app::Parameter& p : found.final.parameters)
+    if (p.name == name) return p;
+  ADD_FAILURE() << "no " << name << '\n' << app::summarize(found);
+  return {};
+}
+inline double value_of(const app::RigExplanation& found, const std::string& name) {
+  return parameter(found, name).value;
+}
+
+}  // namespace dampline::testing
