@@ -107,24 +107,26 @@ def instructions(table, text):
 
 
 def least_squares(table, results):
-    """ns a row by name and unknowns; the largest difference between answers in double precision."""
-    part = "least squares, n = 8 / 16 / 32, ns a row"
+    """ns a row by forgetting, name and unknowns; the largest difference from the batch solution
+    of those who are held to it."""
     entries = (results.json("least_squares").get("least_squares", [])
                + results.json("numpy_least_squares").get("least_squares", []))
-    ns, difference = {}, {}
+    ns, difference, held = {}, {}, {}
     for e in entries:
-        ns.setdefault(e["name"], {})[e["unknowns"]] = e["ns_per_row"]
-        difference[e["name"]] = max(difference.get(e["name"], 0.0), e["difference"])
-    worst = 0.0
-    for name, by in ns.items():
-        apart = "" if name == "dampline" else f"answer differs by {difference[name]:.0e}"
-        if "eqrls" in name:
-            apart += ", single precision"
-        else:
-            worst = max(worst, difference[name])
-        table.add(part, name, " / ".join(f"{by[n]:.0f}" if n in by else "-" for n in (8, 16, 32)),
-                  apart)
-    return ns, worst
+        race, name = e["forgetting"], e["name"]
+        ns.setdefault(race, {}).setdefault(name, {})[e["unknowns"]] = e["ns_per_row"]
+        difference[race, name] = max(difference.get((race, name), 0.0), e["difference"])
+        held[race, name] = e["held"]
+    for race, by_name in ns.items():
+        past = "past rows weigh the same" if race == 1 else f"past rows fade by {race}"
+        for name, by in by_name.items():
+            apart = difference[race, name]
+            note = ", single precision" if "eqrls" in name else (
+                "" if apart < SAME_ANSWER else ": its errors grow")
+            table.add(f"least squares, {past}, n = 8 / 16 / 32, ns a row", name,
+                      " / ".join(f"{by[n]:.0f}" if n in by else "-" for n in (8, 16, 32)),
+                      f"off the batch solution by {apart:.0e}{note}")
+    return ns, max((d for key, d in difference.items() if held[key]), default=0.0)
 
 
 def signals(table, results):

@@ -85,12 +85,13 @@ class EigenCovariance {
     const double denominator = forgetting_ + x.dot(px);
     theta_ += px * ((y - x.dot(theta_)) / denominator);
     p_.noalias() -= px * (px.transpose() / denominator);
-    if (forgetting_ < 1.0) p_ /= forgetting_;
+    if (forgetting_ < 1.0) p_ *= per_forgetting_;
   }
   [[nodiscard]] Column<N> answer() const noexcept { return theta_; }
 
  private:
   double forgetting_;
+  double per_forgetting_{1.0 / forgetting_};
   Eigen::Matrix<double, N, N> p_ = kPriorVariance * Eigen::Matrix<double, N, N>::Identity();
   Column<N> theta_ = Column<N>::Zero();
 };
@@ -108,12 +109,13 @@ class EigenSymmetric {
 #ifndef __clang_analyzer__  // which takes the stack memory in there for memory of the heap
     p_.template selfadjointView<Eigen::Lower>().rankUpdate(px, -1.0 / denominator);
 #endif
-    if (forgetting_ < 1.0) p_ /= forgetting_;
+    if (forgetting_ < 1.0) p_ *= per_forgetting_;
   }
   [[nodiscard]] Column<N> answer() const noexcept { return theta_; }
 
  private:
   double forgetting_;
+  double per_forgetting_{1.0 / forgetting_};
   Eigen::Matrix<double, N, N> p_ = kPriorVariance * Eigen::Matrix<double, N, N>::Identity();
   Column<N> theta_ = Column<N>::Zero();
 };
@@ -181,12 +183,13 @@ class Armadillo {
     const double denominator = forgetting_ + arma::dot(x_, px);
     theta_ += px * ((y - arma::dot(x_, theta_)) / denominator);
     p_ -= px * (px.t() / denominator);
-    if (forgetting_ < 1.0) p_ /= forgetting_;
+    if (forgetting_ < 1.0) p_ *= per_forgetting_;
   }
   [[nodiscard]] Column<N> answer() const { return Eigen::Map<const Column<N>>(theta_.memptr()); }
 
  private:
   double forgetting_;
+  double per_forgetting_{1.0 / forgetting_};
   arma::mat p_ = kPriorVariance * arma::eye(N, N);
   arma::vec theta_ = arma::zeros(N);
   arma::vec x_ = arma::zeros(N);
