@@ -38,6 +38,26 @@ def least_squares_aims(aim, rls, chain_ns):
             beside([("without forgetting", ratio(1.0, name, n))], "{:.1f}", lambda x: x < 1.0))
 
 
+def replay_aims(aim, frames):
+    """Of frames a second by name."""
+    def times(ours, theirs):
+        return frames[ours] / frames[theirs] if ours in frames and theirs in frames else None
+
+    identify, parser = "dampline identify", "canplayer to a socket that takes all at once"
+    aim("replay, million frames a second", 1e-6 * frames[identify] if identify in frames else None,
+        2.0, lambda x: f"{x:.2f}", True)
+    for what, ours, theirs, least in (
+            ("replay, times canplayer to stdout", identify, "canplayer to stdout", 5.0),
+            ("lines to frames alone, times canplayer's parsing alone",
+             "dampline, lines to frames alone", parser, 5.0),
+            ("lines to samples, times canplayer's parsing alone",
+             "dampline, lines to samples alone", parser, 5.0),
+            ("small job, times NumPy and SciPy", "small job, dampline's classes",
+             "small job, NumPy and SciPy", 10.0),
+            ("whole job, times NumPy and SciPy", identify, "whole job, NumPy and SciPy", 10.0)):
+        aim(what, times(ours, theirs), least, lambda x: f"{x:.1f}", True)
+
+
 def aims(table, f):
     """What was to be reached, from figures of this same run."""
     def aim(what, reached, bound, shown=None, least=False, note=""):
@@ -61,14 +81,7 @@ def aims(table, f):
     aim("a sample into a joint histogram, ns, beside GSL",
         streaming.get("joint histogram of 32 x 32: dampline"),
         streaming.get("joint histogram of 32 x 32: gsl_histogram2d_increment"), lambda x: f"{x:.1f}")
-    frames = f["replay"].get("dampline identify")
-    canplayer = f["replay"].get("canplayer to stdout")
-    numpy = f["replay"].get("NumPy and SciPy")
-    aim("replay, million frames a second", frames and 1e-6 * frames, 2.0, lambda x: f"{x:.2f}", True)
-    aim("replay, times canplayer, which only parses",
-        frames / canplayer if frames and canplayer else None, 5.0, lambda x: f"{x:.2f}", True)
-    aim("replay, times NumPy and SciPy", frames / numpy if frames and numpy else None, 10.0,
-        lambda x: f"{x:.1f}", True)
+    replay_aims(aim, f["replay"])
     aim("10,000 trucks, times one", f["trucks"].get(10000), 2.5, lambda x: f"{x:.2f}")
     latency = f["latency"]
     aim("calls of the heap and page faults after start-up",

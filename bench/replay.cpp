@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 // How fast a recorded run is replayed, decoding included, and how much memory that takes, beside
-// canplayer, which only parses the log, and beside NumPy doing the same job.
-// `replay PROGRAM [--day] [--json FILE]`: PROGRAM is the built dampline; --day adds 24 hours
-// through a pipe.
+// canplayer, which only parses the log, and beside NumPy doing a small part of the job and the
+// whole of it. `replay PROGRAM [--day] [--json FILE]`: PROGRAM is the built dampline; --day adds 24
+// hours through a pipe.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -59,27 +61,59 @@ void report(const std::string& name, double record_s, const Usage& usage, nlohma
   std::fflush(stdout);
 }
 
+struct Contestant {
+  std::string name;
+  std::string command;
+  Usage best{};
+};
+
+/// Everybody three times, one after the other, so that a slow moment of the machine meets all; the
+/// least time of each counts.
+void race(std::vector<Contestant>& contestants) {
+  for (int round = 0; round < 3; ++round) {
+    for (Contestant& each : contestants) {
+      const Usage used = run(each.command);
+      if (round == 0 || (used.ok && used.cpu_s < each.best.cpu_s)) each.best = used;
+    }
+  }
+}
+
 /// Writes a record with its configuration, and identifies it from the file.
 void replay_file(const std::string& program, const fs::path& folder, int minutes,
                  nlohmann::json& out) {
   const std::string log = (folder / fmt::format("run{}.log", minutes)).string();
   const std::string config = (folder / "run.toml").string();
   const std::string dbc = (folder / "sensors.dbc").string();
+  const std::string place = (folder / fmt::format("run{}", minutes)).string();
   const Usage made = run(fmt::format(
       "exec '{}' simulate --quiet --duration {} --out '{}' --dbc '{}' --config-out '{}'", program,
       60 * minutes, log, dbc, config));
   if (!made.ok) return fmt::print("could not simulate with {}\n", program);
-  report(fmt::format("{} min, canplayer to stdout", minutes), 60.0 * minutes,
-         run(fmt::format("LD_PRELOAD='{}' exec canplayer -t -I '{}' stdout=can0 >/dev/null",
-                         DAMPLINE_CAN_SOCKET, log)),
-         out);
-  report(fmt::format("{} min, NumPy and SciPy", minutes), 60.0 * minutes,
-         run(fmt::format("exec /usr/bin/python3 bench/peers/pipeline.py '{}' >/dev/null", log)),
-         out);
-  const Usage used = run(
-      fmt::format("exec '{}' identify --quiet --no-report --config '{}' --out '{}' '{}' >/dev/null",
-                  program, config, (folder / fmt::format("run{}", minutes)).string(), log));
-  report(fmt::format("{} min, dampline identify", minutes), 60.0 * minutes, used, out);
+  const auto canplayer = [&](const char* to) {
+    return fmt::format("LD_PRELOAD='{}' exec canplayer -t -I '{}' {}=can0 >/dev/null",
+                       DAMPLINE_CAN_SOCKET, log, to);
+  };
+  const auto part = [&](const char* which) {
+    return fmt::format("exec '{}' {} '{}' '{}' >/dev/null", DAMPLINE_PIPELINE, which, log, config);
+  };
+  const auto numpy = [&](const char* script) {
+    return fmt::format("exec /usr/bin/python3 bench/peers/{} '{}' >/dev/null", script, log);
+  };
+  std::vector<Contestant> contestants{
+      {"canplayer to a socket that takes all at once", canplayer("can0")},
+      {"canplayer to stdout", canplayer("stdout")},
+      {"dampline, lines to frames alone", part("frames")},
+      {"dampline, lines to samples alone", part("samples")},
+      {"small job, NumPy and SciPy", numpy("pipeline.py")},
+      {"small job, dampline's classes", part("job")},
+      {"whole job, NumPy and SciPy", numpy("whole_job.py")},
+      {"dampline identify",
+       fmt::format("exec '{}' identify --quiet --no-report --force --config '{}' --out '{}' '{}' "
+                   ">/dev/null",
+                   program, config, place, log)}};
+  race(contestants);
+  for (const Contestant& each : contestants)
+    report(fmt::format("{} min, {}", minutes, each.name), 60.0 * minutes, each.best, out);
 }
 
 /// A day, from the simulator's pipe: no file of that size, and only identify is measured.

@@ -15,29 +15,41 @@ WIDTHS_MPS = np.array([0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0]) * 1e-
 COUNT_MPS2 = {0: 49.03325 / 2048, 1: 98.0665 / 2048, 2: 98.0665 / 2048}
 
 
-def digits(text, starts, count):
-    """The hexadecimal numbers of `count` digits that begin at `starts`."""
-    value = np.zeros(len(starts), np.int64)
-    for i in range(count):
-        c = text[starts + i].astype(np.int64)
-        value = value * 16 + np.where(c >= 65, (c & 0x5F) - 55, c - 48)
+VALUE = np.zeros(256, np.int32)  # of a hexadecimal digit
+VALUE[np.frombuffer(b"0123456789", np.uint8)] = range(10)
+VALUE[np.frombuffer(b"ABCDEF", np.uint8)] = VALUE[np.frombuffer(b"abcdef", np.uint8)] = range(10, 16)
+
+
+def number(digits, base=16):
+    """The number of each row of digits."""
+    value = VALUE[digits[:, 0]]
+    for i in range(1, digits.shape[1]):
+        value = value * base + VALUE[digits[:, i]]
     return value
 
 
-def parse(path):
-    """Acceleration of each channel by tick, m/s^2; a frame is 12 bits of signal, 12 of counter."""
-    text = np.fromfile(path, np.uint8)
+def frames(text):
+    """Identifier, acceleration in counts and counter of every line, and where its # stands; a
+    frame is 12 bits of signal, 12 of counter."""
     hashes = np.flatnonzero(text == ord("#"))
-    identifier = digits(text, hashes - 3, 3)
-    low, middle, high = (digits(text, hashes + 1 + 2 * i, 2) for i in range(3))
+    fields = np.lib.stride_tricks.sliding_window_view(text, 10)[hashes - 3]
+    low, middle, high = (number(fields[:, i:i + 2]) for i in (4, 6, 8))
     raw = low | (middle & 15) << 8
     raw -= (raw & 0x800) << 1
-    counter = middle >> 4 | high << 4
+    return number(fields[:, :3]), raw, middle >> 4 | high << 4, hashes
+
+
+def ticks(counter):
+    return np.concatenate(([0], np.cumsum(np.diff(counter) & 0xFFF)))
+
+
+def parse(path):
+    """Acceleration of each channel by tick, m/s^2."""
+    identifier, raw, counter, _ = frames(np.fromfile(path, np.uint8))
     channels = []
-    for channel, number in enumerate(sorted(set(identifier.tolist()))[:3]):
-        mine = identifier == number
-        count = counter[mine]
-        tick = np.concatenate(([0], np.cumsum((np.diff(count) & 0xFFF))))
+    for channel, own in enumerate(np.unique(identifier)[:3]):
+        mine = identifier == own
+        tick = ticks(counter[mine])
         values = np.zeros(tick[-1] + 1)
         values[tick] = COUNT_MPS2[channel] * raw[mine]
         channels.append(values)
@@ -52,11 +64,17 @@ def integral(x):
 
 
 def law(velocity):
-    signs = special.erf(0.886226925452758 * velocity[:, None] / WIDTHS_MPS)
-    left = np.concatenate(([0.0], NODES_MPS[:-1]))
-    length = np.append(np.diff(np.append(0.0, NODES_MPS))[:-1], 1e3)
-    ramps = np.clip(np.abs(velocity)[:, None] - left, 0.0, length) * np.sign(velocity)[:, None]
-    return np.hstack((signs, ramps))
+    """Smooth signs of each width, and the ramps of an odd broken line; of the velocity's type."""
+    widths = len(WIDTHS_MPS)
+    left = np.concatenate(([0.0], NODES_MPS[:-1])).astype(velocity.dtype)
+    length = np.append(np.diff(np.append(0.0, NODES_MPS))[:-1], 1e3).astype(velocity.dtype)
+    out = np.empty((len(velocity), widths + len(NODES_MPS)), velocity.dtype)
+    np.multiply(velocity[:, None], (0.886226925452758 / WIDTHS_MPS).astype(velocity.dtype),
+                out=out[:, :widths])
+    special.erf(out[:, :widths], out=out[:, :widths])
+    np.clip(np.abs(velocity)[:, None] - left, 0.0, length, out=out[:, widths:])
+    out[:, widths:] *= np.sign(velocity)[:, None]
+    return out
 
 
 def rows(frame, relative, columns, half):
@@ -72,7 +90,7 @@ def rows(frame, relative, columns, half):
     def windows(x):
         return np.lib.stride_tricks.sliding_window_view(x, 2 * half + 1, axis=0)[::stride]
 
-    return np.column_stack((windows(columns) @ psi, windows(relative) @ psi2,
+    return np.column_stack((windows(columns) @ psi.astype(columns.dtype), windows(relative) @ psi2,
                             -(windows(relative) @ psi1), -(windows(frame) @ psi))) / norm
 
 
@@ -83,7 +101,7 @@ def main():
     deflection = integral(velocity)
     density, _ = np.histogram(velocity, 64, (-0.05, 0.05))
     joint, _, _ = np.histogram2d(deflection, velocity, 32, ((-2e-3, 2e-3), (-0.05, 0.05)))
-    columns = law(velocity)
+    columns = law(velocity.astype(np.float32))
     table = np.vstack([rows(frame, relative, columns, half) for half in (208, 104, 52, 26, 13)])
     chosen = [4] + list(range(10, 20))  # one width, the ramps, stiffness, viscous
     answer, *_ = np.linalg.lstsq(table[:, chosen], table[:, -1], rcond=None)
@@ -91,4 +109,5 @@ def main():
           f"{density.sum():.0f} and {joint.sum():.0f} counted")
 
 
-main()
+if __name__ == "__main__":
+    main()
