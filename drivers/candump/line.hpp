@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -25,7 +26,13 @@ class CandumpLine {
   [[nodiscard]] std::string_view interface_name() const noexcept { return interface_; }
 
  private:
+  /// Most lines are of the second of the line before: false where this one is not, or is unusual.
+  [[nodiscard]] bool take_same_second(std::string_view line, CanFrame& frame) const noexcept;
+  void remember_second(std::string_view line, std::int64_t time_ns) noexcept;
+
   std::string_view interface_;
+  std::array<std::uint64_t, 2> second_text_{};  // "(1600000000." as its characters 0-7 and 4-11
+  std::int64_t second_ns_{-1};                  // negative: none
 };
 
 }  // namespace dampline::drivers

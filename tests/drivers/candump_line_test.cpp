@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "drivers/candump/line.hpp"
 
@@ -45,6 +46,42 @@ TEST(CandumpLine, ReadsAStandardFrame) {
 TEST(CandumpLine, ReadsNineDecimals) {
   EXPECT_EQ(parse("(1631416514.736052123) can0 0D0#").frame.time_ns, 1631416514736052123);
   EXPECT_EQ(parse("(0.000000001) can0 0D0#").frame.time_ns, 1);  // relative times
+}
+
+/// What a parser that has read another line before makes of this one is what a new one makes of it.
+TEST(CandumpLine, ReadsEveryLineAsIfItWereTheFirst) {
+  const std::string digits = "0123456789";
+  std::vector<std::string> lines{"(1631416514.736052) can0 0D0#A8",
+                                 "(1631416514.736052) can0 0D0#"};
+  for (const char c : std::string{"/09:.)( xA\x80\xFF"}) {
+    for (std::size_t place = 0; place < 22; ++place) {
+      lines.push_back(lines[0]);
+      lines.back()[place] = c;
+    }
+  }
+  for (const char c : digits) lines.push_back("(1631416514." + std::string(6, c) + ") can0 0D0#A8");
+  for (const char* line :
+       {"(1631416514.736052123) can0 0D0#A8", "(1631416514.736052) .123456) 0D0#A8",
+        "(1.000000) .123456) can0 0D0#A8", "(1.000000) .123457) 0D0#A8", "(1.000000) .1) 0D0#A8",
+        "(1631416515.000001) can0 0D0#A8", "(1631416514.", "(1631416514.736052)", "(163"})
+    lines.emplace_back(line);
+  for (const std::string& before : lines) {
+    for (const std::string& line : lines) {
+      CanFrame frame;
+      frame.data.fill(0xEE);
+      CandumpLine parser;
+      static_cast<void>(parser.parse(before, frame));
+      const CandumpFault fault = parser.parse(line, frame);
+      const Parsed fresh = parse(line);
+      ASSERT_EQ(fault.expected == nullptr ? "" : fault.expected, fresh.expected) << before << line;
+      if (fault.expected != nullptr) {
+        ASSERT_EQ(fault.at - line.data(), fresh.column) << before << line;
+      } else {
+        ASSERT_EQ(frame.time_ns, fresh.frame.time_ns) << before << line;
+        ASSERT_EQ(parser.interface_name(), fresh.interface) << before << line;
+      }
+    }
+  }
 }
 
 TEST(CandumpLine, ReadsTheDirection) {
