@@ -78,7 +78,7 @@ class Job {
     }
     rows_.set_law(n, law_.lanes(velocity_mps), false);
     for (std::size_t s = 0; s < kScales; ++s) {
-      const int half = rows_.bank().half(s);
+      const std::int64_t half = rows_.bank().half(s);
       if ((n - first_) % rows_.bank().stride(s) == 0 && n - 2 * half >= first_) {
         panel_.rows.set(panel_.count, rows_.row(s, n - half));
         if (++panel_.count < kPanel) continue;
