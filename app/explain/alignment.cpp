@@ -5,19 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/explain/blackman.hpp"
+
 namespace dampline::app {
 namespace {
 
 double sinc(double x) {
   const double turn = std::numbers::pi * x;
   return std::abs(turn) < 1e-9 ? 1.0 : std::sin(turn) / turn;
-}
-
-/// Blackman's weight, 1 at 0, 0 from +-1 on.
-double weight(double u) {
-  if (std::abs(u) >= 1.0) return 0.0;
-  const double turn = std::numbers::pi * u;
-  return 0.42 + 0.5 * std::cos(turn) + 0.08 * std::cos(2.0 * turn);
 }
 
 }  // namespace
@@ -28,7 +23,7 @@ Alignment::Alignment(const LateChannel& lateness, double sample_rate_hz)
   double sum = 0.0;
   for (std::size_t i = 0; i < kTaps; ++i) {
     const double x = static_cast<double>(i) - kHalf - late;
-    taps_[i] = sinc(x) * weight(x / (kHalf + 1));
+    taps_[i] = sinc(x) * blackman(x / (kHalf + 1));
     sum += taps_[i];
   }
   for (double& tap : taps_) tap /= sum;

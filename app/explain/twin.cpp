@@ -3,17 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "app/explain/blackman.hpp"
 
 namespace dampline::app {
 namespace {
 
-constexpr int kFine = 8;               // steps a sample
 constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
 constexpr double kRamp = 0.05;         // of a gap: where the force rises
+constexpr double kMostGivenBack = 2.0;
+constexpr int kBins = 512;
 constexpr double kSteepest = 0.8;      // slope times step that Runge-Kutta is trusted with
 
-sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config) {
-  return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, kFine * config.sample_rate_hz};
+sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config, int fine) {
+  return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, fine * config.sample_rate_hz};
+}
+
+/// What the sensors' filter took of a motion, to be given back: the twin is seen through it again.
+double given_back(const TwinConfig& config, double f_hz) {
+  if (config.anti_alias_hz <= 0.0) return 1.0;
+  return std::min(std::sqrt(1.0 + std::pow(f_hz / config.anti_alias_hz, 8.0)), kMostGivenBack);
 }
 
 bool is_number(const Sample& sample) {
@@ -24,7 +34,8 @@ bool is_number(const Sample& sample) {
 }  // namespace
 
 Twin::Twin(const TwinConfig& config)
-    : config_{config}, filter_{filter_of(config)}, noise_{config.seed, sim::Stream::kSensors} {
+    : config_{config}, filter_{filter_of(config, kFine)}, noise_{config.seed, sim::Stream::kSensors} {
+  set_taps();
   const double sliding_mps2 =
       config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);
   const double slope = 2.0 * sliding_mps2 / kLawWidthMps;
@@ -33,6 +44,26 @@ Twin::Twin(const TwinConfig& config)
     const double rounding = config.step_mps2[c] * config.step_mps2[c] / 12.0;
     white_mps2_[c] =
         std::sqrt(std::max(config.noise_mps2[c] * config.noise_mps2[c] - rounding, 0.0));
+  }
+}
+
+void Twin::set_taps() {
+  for (int part = 0; part <= kFine; ++part) {
+    auto& taps = taps_[static_cast<std::size_t>(part)];
+    const double place = kHalf - 1 + static_cast<double>(part) / kFine;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kTaps; ++i) {
+      const double x = static_cast<double>(i) - place;
+      double tap = 0.0;
+      for (int k = 0; k < kBins; ++k) {
+        const double f = 0.5 * (k + 0.5) / kBins;
+        tap += given_back(config_, f * config_.sample_rate_hz) *
+               std::cos(2.0 * std::numbers::pi * f * x);
+      }
+      taps[i] = tap * blackman(x / kHalf);
+      sum += taps[i];
+    }
+    for (double& tap : taps) tap /= sum;
   }
 }
 
@@ -83,21 +114,19 @@ void Twin::step(double from_mps2, double to_mps2, double step_s) noexcept {
   piston_m_ = std::clamp(piston_m_, motion_.deflection_m - reach_m, motion_.deflection_m + reach_m);
 }
 
-/// The wheelsets between the second and the third of four samples, by the cubic through them.
-std::array<double, 2> Twin::between(double u) const noexcept {
-  const double w0 = -u * (u - 1.0) * (u - 2.0) / 6.0;
-  const double w1 = (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0;
-  const double w2 = -(u + 1.0) * u * (u - 2.0) / 2.0;
-  const double w3 = (u + 1.0) * u * (u - 1.0) / 6.0;
+/// The wheelsets between the middle two of the samples.
+std::array<double, 2> Twin::between(int part) const noexcept {
+  const auto& taps = taps_[static_cast<std::size_t>(part)];
   std::array<double, 2> out{};
-  for (std::size_t w = 0; w < 2; ++w)
-    out[w] = w0 * held_[0].accel_mps2[1 + w] + w1 * held_[1].accel_mps2[1 + w] +
-             w2 * held_[2].accel_mps2[1 + w] + w3 * held_[3].accel_mps2[1 + w];
+  for (std::size_t i = 0; i < kTaps; ++i) {
+    out[0] += taps[i] * held_[i].accel_mps2[1];
+    out[1] += taps[i] * held_[i].accel_mps2[2];
+  }
   return out;
 }
 
 Sample Twin::seen(const std::array<double, kChannels>& accel_mps2) {
-  Sample out = held_[2];
+  Sample out = held_[kHalf];
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double noisy = accel_mps2[c] + white_mps2_[c] * noise_.normal();
     const double step = config_.step_mps2[c];
@@ -110,20 +139,20 @@ void Twin::restart() noexcept {
   count_ = 0;
   motion_ = {};
   piston_m_ = 0.0;
-  filter_ = filter_of(config_);
+  filter_ = filter_of(config_, kFine);
 }
 
 std::optional<Sample> Twin::next(const Sample& sample) {
-  if (!is_number(sample) || (count_ > 0 && sample.tick != held_[3].tick + 1)) restart();
+  if (!is_number(sample) || (count_ > 0 && sample.tick != held_.back().tick + 1)) restart();
   if (!is_number(sample)) return sample;
   std::rotate(held_.begin(), held_.begin() + 1, held_.end());
-  held_[3] = sample;
-  if (++count_ < 4) return std::nullopt;
+  held_.back() = sample;
+  if (++count_ < kTaps) return std::nullopt;
   const double fine_s = 1.0 / (kFine * config_.sample_rate_hz);
-  std::array<double, 2> last = between(0.0);
+  std::array<double, 2> last = between(0);
   std::array<double, kChannels> filtered{};
   for (int i = 1; i <= kFine; ++i) {
-    const std::array<double, 2> now = between(static_cast<double>(i) / kFine);
+    const std::array<double, 2> now = between(i);
     const double from = last[0] + last[1];
     const double to = now[0] + now[1];
     for (int p = 0; p < parts_; ++p)

@@ -52,17 +52,23 @@ class Twin {
   [[nodiscard]] double remembered(const Motion& m) const noexcept;
   [[nodiscard]] Motion rate(const Motion& m, double input_mps2) const noexcept;
   void step(double from_mps2, double to_mps2, double step_s) noexcept;
-  [[nodiscard]] std::array<double, 2> between(double u) const noexcept;
+  [[nodiscard]] std::array<double, 2> between(int part) const noexcept;
   [[nodiscard]] Sample seen(const std::array<double, kChannels>& accel_mps2);
+  void set_taps();
   void restart() noexcept;
 
+  static constexpr int kFine = 8;   // steps a sample
+  static constexpr int kHalf = 24;  // samples to either side that tell what is between two
+  static constexpr std::size_t kTaps = 2 * kHalf;
+
   TwinConfig config_;
+  std::array<std::array<double, kTaps>, kFine + 1> taps_{};
   int parts_{1};  // of the law's steepest slope, in each fine step
   sim::ButterworthLowPass<kChannels> filter_;
   sim::Random noise_;
   std::array<double, kChannels> white_mps2_{};
-  std::array<Sample, 4> held_{};  // oldest first
-  int count_{0};
+  std::array<Sample, kTaps> held_{};  // oldest first
+  std::size_t count_{0};
   Motion motion_{};
   double piston_m_{0.0};  // in its play
 };

@@ -14,7 +14,8 @@ constexpr std::size_t kFewestEntries = 10;
 constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
 constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
 constexpr double kReadjusted = 0.999;
-constexpr double kSimplerWithin = 0.02;
+constexpr double kDirectionZ = 7.0;  // of damping that differs by direction ...
+constexpr double kDirectionT = 3.0;  // ... beside the best with one coefficient
 constexpr double kImpulseShare = 0.08;  // of the residual's energy in large values
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
@@ -99,6 +100,20 @@ void Explainer::add_runner_up(const Model& model, const Candidate& candidate, co
       block_t(now, fit, evidence_.count), coefficient_t(fit, now)};
 }
 
+/// Of damping that differs by direction and the best with one coefficient, the plainer one unless
+/// the difference of the directions is sure; else the first.
+std::size_t Explainer::plainer(const Model& model, const Best* const* order, std::size_t found,
+                               const ModelFit& now) noexcept {
+  if (order[0]->candidate.effect != Effect::kAsymmetricViscous) return 0;
+  std::size_t plain = 1;
+  while (plain < found && order[plain]->candidate.count != 1) ++plain;
+  if (plain == found) return 0;
+  const ModelFit rich = fitter_.fit(model.with(order[0]->candidate));
+  if (coefficient_t(rich, now) < kDirectionZ) return plain;
+  const ModelFit fit = fitter_.fit(model.with(order[plain]->candidate));
+  return block_t(fit, rich, evidence_.count) < kDirectionT ? plain : 0;
+}
+
 bool Explainer::forward(Explanation& out, const ModelFit& now) noexcept {
   if (out.step_count == Explanation::kMostSteps) return false;
   BestOfEffects best;
@@ -111,15 +126,7 @@ bool Explainer::forward(Explanation& out, const ModelFit& now) noexcept {
   if (found == 0) return false;
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(found),
             [](const Best* a, const Best* b) { return a->judged < b->judged; });
-  // Of two that explain alike, the one with fewer coefficients.
-  std::size_t pick = 0;
-  for (std::size_t i = 1; i < found; ++i) {
-    const bool simpler = order[pick]->candidate.effect == Effect::kAsymmetricViscous &&
-                         order[i]->candidate.count == 1;
-    if (simpler && order[i]->held_out_nmse < (1.0 + kSimplerWithin) * order[0]->held_out_nmse) {
-      pick = i;
-    }
-  }
+  const std::size_t pick = plainer(out.model, order.data(), found, now);
   std::swap(order[0], order[pick]);
   for (std::size_t c = 0; c < found; ++c) {
     const Step step = step_of(out.model, order.data(), found, c, now);

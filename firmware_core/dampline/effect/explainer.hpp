@@ -81,6 +81,8 @@ class Explainer {
   /// the friction and spring that the whole model has.
   [[nodiscard]] ModelFit settle(const GramStore& store, Model& model) noexcept;
   bool forward(Explanation& out, const ModelFit& now) noexcept;
+  [[nodiscard]] std::size_t plainer(const Model& model, const Best* const* order, std::size_t found,
+                                    const ModelFit& now) noexcept;
   [[nodiscard]] Step step_of(const Model& model, const Best* const* order, std::size_t found,
                              std::size_t c, const ModelFit& now) noexcept;
   bool readjust(Explanation& out, ModelFit& now) noexcept;
