@@ -14,7 +14,7 @@ constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
 constexpr double kRamp = 0.05;         // of a gap: where the force rises
 constexpr double kMostGivenBack = 2.0;
 constexpr int kBins = 512;
-constexpr double kSteepest = 0.8;      // slope times step that Runge-Kutta is trusted with
+constexpr double kSteepest = 0.8;  // slope times step that Runge-Kutta is trusted with
 
 sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config, int fine) {
   return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, fine * config.sample_rate_hz};
@@ -34,7 +34,9 @@ bool is_number(const Sample& sample) {
 }  // namespace
 
 Twin::Twin(const TwinConfig& config)
-    : config_{config}, filter_{filter_of(config, kFine)}, noise_{config.seed, sim::Stream::kSensors} {
+    : config_{config},
+      filter_{filter_of(config, kFine)},
+      noise_{config.seed, sim::Stream::kSensors} {
   set_taps();
   const double sliding_mps2 =
       config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);

@@ -12,7 +12,6 @@
 
 #include "app/explain/frame_noise.hpp"
 #include "dampline/effect/explainer.hpp"
-#include "dampline/guard/guard.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/presets.hpp"
 
@@ -197,11 +196,11 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   core.moving_mass_kg = config.truck.moving_mass_kg;
   const auto identifier = std::make_unique<Identifier>(core);
   const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
-  const auto guard = std::make_unique<Guard>(GuardConfig{});
+  FrameNoise noise{kRateHz, core.anti_alias};
   std::vector<Sample> samples;
   for (int n = 0; n < 200 * 300; ++n) {
     samples.push_back(sim::to_sample(simulation.next()));
-    guard->update(samples.back());
+    noise.take(samples.back());
     diagnosis->update(samples.back(), identifier->update(samples.back()));
   }
   diagnosis->finish();
@@ -213,16 +212,26 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   settings.stiffness_per_s2 = e.final_stiffness_npm.value / core.moving_mass_kg;
   settings.coulomb_mps2 = e.final_coulomb_n.value / core.moving_mass_kg;
   settings.anti_alias_hz = core.anti_alias.corner_hz;
-  for (std::size_t c = 0; c < kChannels; ++c) settings.noise_mps2[c] = guard->noise_mps2(c);
-  Twin twin{settings};
-  const auto again = std::make_unique<Identifier>(core);
-  const auto twins = std::make_unique<effect::Diagnosis>(core, diagnosis->grids());
-  for (const Sample& s : samples) {
-    const auto t = twin.next(s);
-    if (t) twins->update(*t, again->update(*t));
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    settings.step_mps2[c] = sim::count_scale_mps2(config.sensors.range_mps2[c]);
+    const auto rounding = [&](std::size_t i) { return settings.step_mps2[i] / std::sqrt(12.0); };
+    // The frame's, with the channel's own resolution.
+    settings.noise_mps2[c] = std::sqrt(std::pow(noise.noise_mps2(), 2) - std::pow(rounding(0), 2) +
+                                       std::pow(rounding(c), 2));
   }
-  twins->finish();
-  EXPECT_TRUE(explainer->apply_floor({*twins}, 0, e));
+  std::array<std::unique_ptr<effect::Diagnosis>, 2> twins;
+  for (auto& seen : twins) {
+    ++settings.seed;
+    Twin twin{settings};
+    const auto again = std::make_unique<Identifier>(core);
+    seen = std::make_unique<effect::Diagnosis>(core, diagnosis->grids());
+    for (const Sample& s : samples) {
+      const auto t = twin.next(s);
+      if (t) seen->update(*t, again->update(*t));
+    }
+    seen->finish();
+  }
+  EXPECT_TRUE(explainer->apply_floor({*twins[0], twins[1].get()}, 0, e));
   out.truth = e.base.held_out_nmse;
   return out;
 }

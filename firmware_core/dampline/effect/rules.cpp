@@ -24,6 +24,9 @@ constexpr double kLaterZ = 10.0;
 constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ
 constexpr double kLaterClearZ = 8.0;
 constexpr double kFaintZ = 4.2;
+constexpr double kFaintFrictionGain = 0.0015;  // with kFaintFrictionT and kFaintFrictionZ
+constexpr double kFaintFrictionT = 1.5;
+constexpr double kFaintFrictionZ = 12.0;
 
 bool is_even_spring(Effect effect) noexcept {
   return effect == Effect::kQuadraticStiffness || effect == Effect::kAsymmetricStiffness;
@@ -101,13 +104,20 @@ bool passes_first(const Step& step) noexcept {
 }
 
 /// A spring that bends: small beside what sensors and the law's width leave where the truck hardly
-/// reaches its curve, yet sure. What else is so small may be an imperfection: friction's are of the
-/// velocity's error, channels and modes fit many things, and stops a few values.
+/// reaches its curve, yet sure. What else is so small may be an imperfection: channels and modes
+/// fit many things, and stops a few values.
 bool is_faint(const Step& step) noexcept {
   const Effect e = step.chosen.effect;
   const bool spring = e == Effect::kCubicStiffness || e == Effect::kQuadraticStiffness ||
                       e == Effect::kAsymmetricStiffness;
   return spring && step.gain > 0.0 && step.coefficient_t > kFaintZ;
+}
+
+/// Friction that falls with speed, where the velocity's error, which looks like it, is far less
+/// sure of itself: z to 4 on clean records.
+bool is_faint_friction(const Step& step) noexcept {
+  return step.chosen.effect == Effect::kStribeck && step.gain > kFaintFrictionGain &&
+         step.block_t > kFaintFrictionT && step.coefficient_t > kFaintFrictionZ;
 }
 
 }  // namespace
@@ -132,7 +142,7 @@ double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {
 
 Verdict judge_step(const Model& model, bool first, bool best, const Step& step) noexcept {
   if (first) {
-    const bool joins = is_faint(step) || (best && passes_first(step));
+    const bool joins = is_faint(step) || (best && (passes_first(step) || is_faint_friction(step)));
     return joins ? Verdict::kYes : Verdict::kNo;
   }
   if (passes_later(step, later_gain(model, step.chosen))) return Verdict::kYes;
