@@ -66,9 +66,10 @@ struct Tally {
     }
     const bool named = record.names(0, record.planted[0].effect);
     if (!named) {
-      const std::string why = record.withheld ? " (withheld:" + record.faults + ")"
-                              : record.drifts ? " (drift)"
-                                              : "";
+      const std::string why = record.withheld       ? " (withheld:" + record.faults + ")"
+                              : record.drifts       ? " (drift)"
+                              : record.is_untouched ? " (never touched)"
+                                                    : "";
       const effect::Step& best = e.step_count == 0 ? e.rejected : e.step[0];
       misses += fmt::format("| {} | {} | {}{} | {} {:.2f} % t {:.1f} |\n", condition.name,
                             record.planted[0].text, verdict, why,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -128,6 +129,7 @@ struct DiagnosedRecord {
   effect::Explanation explanation;
   bool withheld{false};
   bool drifts{false};
+  bool is_untouched{false};  ///< a stop that the motion never reaches
   std::string faults;
   std::vector<Planted> planted;
   double coulomb_n{0.0};
@@ -139,20 +141,23 @@ struct DiagnosedRecord {
   }
 };
 
-/// The frames of a simulated run as candump text.
-inline void write_record(const sim::SimulationConfig& config, double length_s,
-                         const std::string& path) {
+/// The frames of a simulated run as candump text; returns the largest deflection, in metres.
+[[nodiscard]] inline double write_record(const sim::SimulationConfig& config, double length_s,
+                                         const std::string& path) {
   sim::Simulation simulation{config};
   sim::SensorNodes nodes{{}, config.seed};
   sim::Transport transport{{}, config.seed};
   fmt::memory_buffer text;
+  double largest_m = 0.0;
   const auto samples = static_cast<std::int64_t>(length_s * sim::kSampleRateHz);
   for (std::int64_t n = 0; n < samples; ++n) {
     const sim::SimulatedSample sample = simulation.next();
+    largest_m = std::max(largest_m, std::abs(sample.instant.deflection_m));
     for (const CanFrame& frame : transport.pass(nodes.pack(sample), sample.time_s))
       drivers::append_candump(text, frame, "can0");
   }
   std::ofstream{path}.write(text.data(), static_cast<std::streamsize>(text.size()));
+  return largest_m;
 }
 
 /// Grids whose points are all the true one of a planted effect.
@@ -200,7 +205,7 @@ inline effect::Explanation sound_fit_of(const app::Config& settings, sim::Simula
                                         const std::string& path) {
   config.sensors.time_skew_s = {};
   config.sensors.gain_error = {};
-  write_record(config, 300.0, path);
+  static_cast<void>(write_record(config, 300.0, path));
   const app::TruckPass pass = app::pass_of(settings, {path, false}, {});
   effect::ExplainerConfig nothing;
   nothing.moving_mass_kg = settings.car.moving_mass_kg;
@@ -231,11 +236,15 @@ inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted>
   const std::string path =
       (std::filesystem::temp_directory_path() / fmt::format("diagnosis_{}.log", ::getpid()))
           .string();
-  write_record(config, 300.0, path);
+  const double largest_m = write_record(config, 300.0, path);
   app::Config settings;
   settings.car.moving_mass_kg = config.truck.moving_mass_kg;
   const app::Explained found = app::explain_truck(settings, {{path, false}, {}, false});
   DiagnosedRecord out;
+  const auto is_out_of_reach = [&](const Planted& p) {
+    return p.parameter == "bump_stop_gap" && largest_m < p.truth;
+  };
+  out.is_untouched = std::any_of(planted.begin(), planted.end(), is_out_of_reach);
   out.by_true_model = true_fit(settings, config, path, planted);
   std::filesystem::remove(path);
   out.explanation = found.explanation;

@@ -59,7 +59,7 @@ class Twin {
 
   static constexpr int kFine = 8;   // steps a sample
   static constexpr int kHalf = 24;  // samples to either side that tell what is between two
-  static constexpr std::size_t kTaps = 2 * kHalf;
+  static constexpr std::size_t kTaps = 2 * static_cast<std::size_t>(kHalf);
 
   TwinConfig config_;
   std::array<std::array<double, kTaps>, kFine + 1> taps_{};

@@ -14,6 +14,7 @@ constexpr std::size_t kFewestEntries = 10;
 constexpr double kSkewGain = 0.025;  // below, a time skew is no candidate
 constexpr double kNeeded = 0.01;     // loss without it that keeps an effect in the model
 constexpr double kReadjusted = 0.999;
+constexpr double kSimplerWithin = 0.02;
 constexpr double kDirectionZ = 7.0;     // of damping that differs by direction ...
 constexpr double kDirectionT = 3.0;     // ... beside the best with one coefficient
 constexpr double kImpulseShare = 0.08;  // of the residual's energy in large values
@@ -101,7 +102,8 @@ void Explainer::add_runner_up(const Model& model, const Candidate& candidate, co
 }
 
 /// Of damping that differs by direction and the best with one coefficient, the plainer one unless
-/// the difference of the directions is sure; else the first.
+/// the difference of the directions is sure, and large beside effects whose imperfections have a
+/// direction, too; else the first.
 std::size_t Explainer::plainer(const Model& model, const Best* const* order, std::size_t found,
                                const ModelFit& now) noexcept {
   if (order[0]->candidate.effect != Effect::kAsymmetricViscous) return 0;
@@ -111,6 +113,9 @@ std::size_t Explainer::plainer(const Model& model, const Best* const* order, std
   const ModelFit rich = fitter_.fit(model.with(order[0]->candidate));
   if (coefficient_t(rich, now) < kDirectionZ) return plain;
   const ModelFit fit = fitter_.fit(model.with(order[plain]->candidate));
+  const bool later = model.count > 0;
+  const bool alike = fit.held_out_nmse < (1.0 + kSimplerWithin) * rich.held_out_nmse;
+  if (later && alike) return plain;
   return block_t(fit, rich, evidence_.count) < kDirectionT ? plain : 0;
 }
 

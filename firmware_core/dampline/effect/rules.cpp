@@ -38,8 +38,9 @@ bool is_bent_spring(Effect effect) noexcept {
 /// The gain that a later effect needs beside one that is in the model. What a late channel leaves,
 /// in second order, looks like a mode or like friction that builds up, and its friction, which
 /// leaps late, like a wrong gain of the same channel; friction that builds up to other levels in
-/// each direction, like progressive friction. The deflection comes without its mean, so that a stop
-/// or a curved spring is not seen from its centre and leaves something even.
+/// each direction, like progressive friction or damping by direction. The deflection comes without
+/// its mean, so that a stop or a curved spring is not seen from its centre and leaves something
+/// even.
 double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept {
   const Effect known = beside.effect;
   const Effect effect = candidate.effect;
@@ -54,7 +55,9 @@ double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept
   if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
   if (!has_memory(known)) return kLaterGain;
   if (effect == Effect::kTimeSkew) return kSkewBesideMemoryGain;
-  return effect == Effect::kProgressiveFriction ? kLaterMemoryGain : kLaterSensorGain;
+  const bool directed =
+      effect == Effect::kProgressiveFriction || effect == Effect::kAsymmetricViscous;
+  return directed ? kLaterMemoryGain : kLaterSensorGain;
 }
 
 /// Friction that builds up to a level which itself grows with the deflection: the model has their
