@@ -82,7 +82,9 @@ def aims(table, f):
         streaming.get("joint histogram of 32 x 32: dampline"),
         streaming.get("joint histogram of 32 x 32: gsl_histogram2d_increment"), lambda x: f"{x:.1f}")
     replay_aims(aim, f["replay"])
-    aim("10,000 trucks, times one", f["trucks"].get(10000), 2.5, lambda x: f"{x:.2f}")
+    for batch in (1, 8, 32):
+        aim(f"10,000 trucks, {batch} of one in a row, times one", f["trucks"].get((10000, batch)),
+            2.5, lambda x: f"{x:.2f}")
     latency = f["latency"]
     aim("calls of the heap and page faults after start-up",
         sum(e["heap_calls"] + e["page_faults"] for e in latency) if latency else None, 0)

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string_view>
 #include <vector>
 
-#include "bench/cache_misses.hpp"
 #include "bench/chain.hpp"
+#include "bench/fleet.hpp"
 #include "bench/peers/problem.hpp"
 #include "bench/peers/timing.hpp"
 #include "bench/ride.hpp"
@@ -163,55 +163,32 @@ void segments(const Limit& limit, nlohmann::json& out) {
   print_terms<kUnknowns>(limit, row_ns<kUnknowns>(x, y), "broken line, two more", out);
 }
 
-/// Of one truck and sample.
-struct TruckCost {
-  double ns;
-  std::optional<double> cache_misses;  // none where the machine does not count them
-};
-
-/// Frames to estimate, one instant of every truck after another.
-TruckCost truck_cost(std::size_t trucks) {
-  std::vector<std::unique_ptr<Chain<Parts::kEstimate>>> fleet;
-  for (std::size_t i = 0; i < trucks; ++i)
-    fleet.push_back(std::make_unique<Chain<Parts::kEstimate>>());
-  FrameFeed feed;
-  const auto tick = [&] {
-    const auto frames = feed.next();
-    for (const auto& truck : fleet) truck->push(frames);
-  };
-  // Past the 3.2 s after which every scale makes rows.
-  for (int i = 0; i < 1'000; ++i) tick();
-  const auto ticks =
-      static_cast<std::int64_t>(std::clamp<std::size_t>(1'000'000 / trucks, 120, 100'000));
-  const double samples = static_cast<double>(ticks) * static_cast<double>(trucks);
-  const CacheMisses counter;
-  counter.start();
-  const double start_ns = thread_time_ns();
-  for (std::int64_t i = 0; i < ticks; ++i) tick();
-  TruckCost out{(thread_time_ns() - start_ns) / samples, std::nullopt};
-  if (const auto misses = counter.stop()) out.cache_misses = static_cast<double>(*misses) / samples;
-  return out;
-}
-
+/// How many trucks, and how many samples of one in a row.
 void trucks(const Limit& limit, nlohmann::json& out) {
-  const double mib = static_cast<double>(sizeof(Chain<Parts::kEstimate>)) / (1024.0 * 1024.0);
+  const double mib = static_cast<double>(sizeof(Fleet::Truck)) / (1024.0 * 1024.0);
   fmt::print(
-      "\n| trucks | memory, MiB | ns per truck and sample | times one truck | misses of the last "
-      "cache per truck and sample |\n|--|--|--|--|--|\n");
-  double one_ns = 0.0;
+      "\n| trucks | memory, MiB | samples of one in a row | ns per truck and sample | times one "
+      "truck | misses of the last cache per truck and sample |\n|--|--|--|--|--|--|\n");
+  std::map<std::size_t, double> one_ns;
   for (const std::size_t count : {1U, 100U, 1'000U, 10'000U}) {
-    const TruckCost cost = truck_cost(count);
-    if (count == 1) one_ns = cost.ns;
-    fmt::print("| {} | {:.1f} | {:.0f} | {:.2f} | {} |\n", count, mib * static_cast<double>(count),
-               cost.ns, cost.ns / one_ns,
-               cost.cache_misses ? fmt::format("{:.1f}", *cost.cache_misses) : "not counted here");
-    std::fflush(stdout);
-    out["trucks"].push_back({{"trucks", count},
-                             {"mib", mib * static_cast<double>(count)},
-                             {"ns_per_sample", cost.ns},
-                             {"times_one", cost.ns / one_ns},
-                             {"cache_misses_per_sample", nullptr}});
-    if (cost.cache_misses) out["trucks"].back()["cache_misses_per_sample"] = *cost.cache_misses;
+    Fleet fleet{count};
+    for (const std::size_t batch : {std::size_t{1}, std::size_t{8}, Fleet::kLongestBatch}) {
+      const TruckCost cost = fleet.cost(batch);
+      const double times_one = cost.ns / one_ns.emplace(batch, cost.ns).first->second;
+      const double all_mib = mib * static_cast<double>(count);
+      fmt::print(
+          "| {} | {:.1f} | {} | {:.0f} | {:.2f} | {} |\n", count, all_mib, batch, cost.ns,
+          times_one,
+          cost.cache_misses ? fmt::format("{:.1f}", *cost.cache_misses) : "not counted here");
+      std::fflush(stdout);
+      out["trucks"].push_back({{"trucks", count},
+                               {"mib", all_mib},
+                               {"in_a_row", batch},
+                               {"ns_per_sample", cost.ns},
+                               {"times_one", times_one},
+                               {"cache_misses_per_sample", nullptr}});
+      if (cost.cache_misses) out["trucks"].back()["cache_misses_per_sample"] = *cost.cache_misses;
+    }
   }
   fmt::print("Memory gives {:.1f} bytes a ns, the first cache {:.1f}\n", limit.far_bytes_per_ns,
              limit.near_bytes_per_ns);

@@ -175,7 +175,7 @@ def limits(table, limit, mean, ns):
 
 
 def scale(table, figures):
-    """Times one truck, by trucks."""
+    """Times one truck, by trucks and samples of one in a row."""
     for e in figures.get("terms", []):
         square = (e["terms"] + 1) ** 2
         table.add("scale: a row of n unknowns", f"{e['rows']}, n = {e['terms']}",
@@ -184,14 +184,15 @@ def scale(table, figures):
                   f"{e['bytes']:.0f} bytes")
     for e in figures.get("trucks", []):
         misses = e["cache_misses_per_sample"]
-        table.add("scale: trucks in one process, ns each", f"{e['trucks']:,}, {e['mib']:.0f} MiB",
+        table.add("scale: trucks in one process, ns each",
+                  f"{e['trucks']:,}, {e['mib']:.0f} MiB, {e['in_a_row']} of one in a row",
                   f"{e['ns_per_sample']:.0f}, {e['times_one']:.2f} times one",
                   "cache misses not counted here" if misses is None
                   else f"{misses:.1f} cache misses a sample")
     for e in figures.get("windows", []):
         table.add("scale: memory of the estimate, ns a sample", e["memory"],
                   f"{e['ns_per_sample']:.0f}")
-    return {e["trucks"]: e["times_one"] for e in figures.get("trucks", [])}
+    return {(e["trucks"], e["in_a_row"]): e["times_one"] for e in figures.get("trucks", [])}
 
 
 def replay(table, entries):

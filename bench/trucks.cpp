@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <new>
 #include <vector>
 
 #include "app/identify/can_channels.hpp"
 #include "app/live/lateness.hpp"
+#include "bench/large_array.hpp"
 #include "dampline/identifier.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/os/system_clock.hpp"
@@ -47,24 +48,25 @@ std::vector<CanFrame> make_ride() {
 
 class Fleet {
  public:
-  Fleet(const std::vector<CanFrame>& ride, std::size_t trucks) : ride_{ride} {
-    for (std::size_t i = 0; i < trucks; ++i) trucks_.push_back(std::make_unique<Truck>(i));
-  }
+  Fleet(const std::vector<CanFrame>& ride, std::size_t trucks)
+      : ride_{ride}, trucks_{trucks, [](void* place, std::size_t number) {
+                               new (place) Truck{number};
+                             }} {}
   /// The next tick of every truck.
   void tick() {
     Sample sample;
-    for (const auto& truck : trucks_) {
-      const std::int64_t tick = (tick_ + truck->phase) % kRideTicks;
+    for (Truck& truck : trucks_) {
+      const std::int64_t tick = (tick_ + truck.phase) % kRideTicks;
       for (std::size_t c = 0; c < kChannels; ++c)
-        truck->assembler.push(ride_[static_cast<std::size_t>(tick) * kChannels + c]);
-      while (truck->assembler.pop(sample)) static_cast<void>(truck->identifier.update(sample));
+        truck.assembler.push(ride_[static_cast<std::size_t>(tick) * kChannels + c]);
+      while (truck.assembler.pop(sample)) static_cast<void>(truck.identifier.update(sample));
     }
     ++tick_;
   }
 
  private:
   const std::vector<CanFrame>& ride_;
-  std::vector<std::unique_ptr<Truck>> trucks_;
+  bench::LargeArray<Truck> trucks_;
   std::int64_t tick_{0};
 };
 
