@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -51,11 +52,14 @@ struct Counted {
   std::vector<double> plane;
 };
 
+/// Filters are designed before the time begins.
 void enter_motion(std::vector<Contestant>& list, const Signals& signals) {
-  list.push_back({"motion: dampline, velocity and deflection (per output)", [&signals] {
-                    Fir<VelocityLift::kHalf> lift{VelocityLift{{}, 300.0}.taps()};
-                    DriftFreeIntegral velocity{300.0};
-                    DriftFreeIntegral deflection{300.0};
+  const Fir<VelocityLift::kHalf> new_lift{VelocityLift{{}, 300.0}.taps()};
+  const DriftFreeIntegral new_integral{300.0};
+  list.push_back({"motion: dampline, velocity and deflection (per output)", [=, &signals] {
+                    auto lift = new_lift;
+                    auto velocity = new_integral;
+                    auto deflection = new_integral;
                     double a = 0.0;
                     double v = 0.0;
                     double y = 0.0;
@@ -63,23 +67,24 @@ void enter_motion(std::vector<Contestant>& list, const Signals& signals) {
                       if (lift.update(x, a) && velocity.update(a, v) && deflection.update(v, y))
                         sink = y;
                   }});
-  list.push_back({"motion: dampline, one integral", [&signals] {
-                    DriftFreeIntegral velocity{300.0};
+  list.push_back({"motion: dampline, one integral", [=, &signals] {
+                    auto velocity = new_integral;
                     double v = 0.0;
                     for (const double x : signals.relative_mps2)
                       if (velocity.update(x, v)) sink = v;
                   }});
 #ifdef DAMPLINE_HAS_LIQUID
-  list.push_back({"motion: liquid iirfilt_rrrf, fourth order", [&signals] {
-                    iirfilt_rrrf filter = iirfilt_rrrf_create_prototype(
-                        LIQUID_IIRDES_BUTTER, LIQUID_IIRDES_HIGHPASS, LIQUID_IIRDES_SOS, 4,
-                        0.7F / 300.0F, 0.0F, 1.0F, 60.0F);
+  const std::shared_ptr<iirfilt_rrrf_s> filter{
+      iirfilt_rrrf_create_prototype(LIQUID_IIRDES_BUTTER, LIQUID_IIRDES_HIGHPASS, LIQUID_IIRDES_SOS,
+                                    4, 0.7F / 300.0F, 0.0F, 1.0F, 60.0F),
+      iirfilt_rrrf_destroy};
+  list.push_back({"motion: liquid iirfilt_rrrf, fourth order", [filter, &signals] {
+                    iirfilt_rrrf_reset(filter.get());
                     float out = 0.0F;
                     for (const double x : signals.relative_mps2) {
-                      iirfilt_rrrf_execute(filter, static_cast<float>(x), &out);
+                      iirfilt_rrrf_execute(filter.get(), static_cast<float>(x), &out);
                       sink = static_cast<double>(out);
                     }
-                    iirfilt_rrrf_destroy(filter);
                   }});
 #endif
 }

@@ -80,6 +80,12 @@ class BinAxis {
   }
 
   [[nodiscard]] bool learning() const noexcept { return to_learn_ > 0; }
+  /// False: learn() would count the sample and change nothing. Not of a NaN.
+  [[nodiscard]] bool may_change(double x) const noexcept {
+    return to_learn_ > 0 && (to_learn_ == 1 || !(std::abs(x) <= largest_));
+  }
+  /// As learn() of a sample that changes nothing.
+  void count() noexcept { to_learn_ -= to_learn_ > 0 ? 1U : 0U; }
   [[nodiscard]] double low() const noexcept { return low_; }
   [[nodiscard]] double high() const noexcept { return low_ + static_cast<double>(Bins) * width_; }
   [[nodiscard]] double width() const noexcept { return width_; }

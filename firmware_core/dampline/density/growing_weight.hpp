@@ -10,10 +10,10 @@ class GrowingWeight {
  public:
   /// `memory` in steps; 0: nothing is forgotten and every weight is exactly 1.
   explicit GrowingWeight(double memory) noexcept
-      : growth_{memory > 0.0 ? std::exp(1.0 / memory) : 1.0} {}
+      : growth_{memory > 0.0 ? std::exp(1.0 / memory) : 1.0}, forgets_{growth_ != 1.0} {}
 
   [[nodiscard]] double value() const noexcept { return weight_; }
-  [[nodiscard]] bool forgets() const noexcept { return growth_ != 1.0; }
+  [[nodiscard]] bool forgets() const noexcept { return forgets_; }
   [[nodiscard]] double growth() const noexcept { return growth_; }
 
   /// The next sample's weight. Returns the factor that all sums must be scaled by, almost always 1.
@@ -28,6 +28,7 @@ class GrowingWeight {
   static constexpr double kLimit = 0x1p300;
   double growth_;
   double weight_{1.0};
+  bool forgets_;
 };
 
 }  // namespace dampline

@@ -45,8 +45,9 @@ class Histogram {
 
   void update(double x, std::size_t group = 0) noexcept {
     const double place = axis_.place(x);
-    if (weight_.forgets() || axis_.learning() || !Axis::inside(place))
+    if (weight_.forgets() || !Axis::inside(place) || axis_.may_change(x))
       return update_slowly(x, group);
+    axis_.count();
     ++usual_;
     masses_[group][static_cast<std::size_t>(static_cast<int>(place))] += 1.0;
   }

@@ -41,9 +41,11 @@ class JointHistogram {
   void update(double x, double y) noexcept {
     const double x_place = x_.place(x);
     const double y_place = y_.place(y);
-    if (weight_.forgets() || x_.learning() || y_.learning() || !XAxis::inside(x_place) ||
-        !YAxis::inside(y_place))
+    if (weight_.forgets() || !XAxis::inside(x_place) || !YAxis::inside(y_place) ||
+        x_.may_change(x) || y_.may_change(y))
       return update_slowly(x, y);
+    x_.count();
+    y_.count();
     ++usual_;
     masses_[static_cast<std::size_t>(static_cast<int>(x_place))]
            [static_cast<std::size_t>(static_cast<int>(y_place))] += 1.0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "dampline/motion/wide_dot.hpp"
-#include "dampline/wide.hpp"
 
 namespace dampline {
 namespace {
@@ -34,21 +33,32 @@ constexpr std::array<double, 4> cubic_b_spline(double u) noexcept {
 }  // namespace
 
 Baseline::Baseline(int decimation) noexcept
-    : decimation_{decimation}, box_half_{3 * (decimation - 1) / 2} {
+    : decimation_{decimation},
+      box_half_{3 * (decimation - 1) / 2},
+      delay_{10 * decimation + box_half_},
+      first_known_{delay_ + first()} {
   reset();
-  // Box convolved with box convolved with box, by counting: how many triples add up to i.
+  // Box convolved with box convolved with box, by counting: how many triples of 0...decimation - 1
+  // add up to i. Up to the middle there are ever more.
   const double scale = 1.0 / (static_cast<double>(decimation) * decimation * decimation);
-  for (int a = 0; a < decimation; ++a) {
-    for (int b = 0; b < decimation; ++b) {
-      for (int c = 0; c < decimation; ++c) box_[static_cast<std::size_t>(a + b + c)] += scale;
-    }
+  const auto pairs = [](int n) { return n > 0 ? n * (n + 1) / 2 : 0; };
+  double sum = 0.0;
+  for (int i = 0, counted = 0; i <= box_half_; ++i) {
+    const int triples = pairs(i + 1) - 3 * pairs(i + 1 - decimation);
+    for (; counted < triples; ++counted) sum += scale;
+    box_[static_cast<std::size_t>(i)] = box_[static_cast<std::size_t>(2 * box_half_ - i)] = sum;
   }
   for (int i = 0; i < decimation; ++i) {
     spline_[static_cast<std::size_t>(i)] = cubic_b_spline(static_cast<double>(i) / decimation);
   }
 }
 
-void Baseline::low_rate_step(std::int64_t instant) noexcept {
+// The sample that completes the boxes of an instant also begins a stretch of the spline: the value
+// that comes out with it lies on a knot, two instants before the newest coefficient.
+void Baseline::low_rate_step() noexcept {
+  const std::int64_t instant = instant_++;
+  next_box_ += decimation_;
+  place_ = 0;
   const std::int64_t start = instant * decimation_ - box_half_;
   const auto length = static_cast<std::size_t>(2 * box_half_ + 1);
   const std::size_t from = static_cast<std::size_t>(start) & (kRing - 1);
@@ -64,35 +74,13 @@ void Baseline::low_rate_step(std::int64_t instant) noexcept {
   for (int j = 1; j <= kTapsHalf; ++j) {
     c += taps[static_cast<std::size_t>(j)] * (low(centre - j) + low(centre + j));
   }
-  coefficients_[static_cast<std::size_t>(centre) & 7U] = c;
-}
-
-DAMPLINE_WIDE bool Baseline::update(double x, double& out) noexcept {
-  const std::int64_t n = count_++;
-  ring_[static_cast<std::size_t>(n) & (kRing - 1)] = x;
-  if (n == next_box_) {
-    low_rate_step(instant_++);
-    next_box_ += decimation_;
-  }
-  const std::int64_t e = n - delay();
-  if (e < first()) return false;
-  const auto& b = spline_[place_];
-  double slow = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    slow += b[i] * coefficients_[(static_cast<std::size_t>(knot_) + i - 1) & 7U];
-  }
-  out = at(e) - slow;
-  if (++place_ == static_cast<std::size_t>(decimation_)) {
-    place_ = 0;
-    ++knot_;
-  }
-  return true;
+  knots_ = {knots_[1], knots_[2], knots_[3], c};
 }
 
 void Baseline::rebase(double amount) noexcept {
   for (double& x : ring_) x -= amount;
   for (double& x : low_) x -= amount;
-  for (double& x : coefficients_) x -= amount;
+  for (double& x : knots_) x -= amount;
 }
 
 }  // namespace dampline

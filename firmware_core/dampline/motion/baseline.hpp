@@ -26,19 +26,28 @@ class Baseline {
   [[nodiscard]] Corner corner() const noexcept { return corner_; }
 
   /// Takes x_n. True when `out` was set to x_(n-delay()) less its slow part.
-  bool update(double x, double& out) noexcept;
+  bool update(double x, double& out) noexcept {
+    const std::int64_t n = count_++;
+    ring_[static_cast<std::size_t>(n) & (kRing - 1)] = x;
+    if (n == next_box_) low_rate_step();
+    if (n < first_known_) return false;
+    const std::array<double, 4>& b = spline_[place_];
+    const double slow = b[0] * knots_[0] + b[1] * knots_[1] + b[2] * knots_[2] + b[3] * knots_[3];
+    out = ring_[static_cast<std::size_t>(n - delay_) & (kRing - 1)] - slow;
+    ++place_;
+    return true;
+  }
 
   void reset() noexcept {
     count_ = 0;
     instant_ = kFirstBox;
     next_box_ = box_half_ + kFirstBox * decimation_;
-    knot_ = kFirstBox + kTapsHalf + 1;
     place_ = 0;
   }
   /// Subtracts a constant from everything stored; the output does not change.
   void rebase(double amount) noexcept;
 
-  [[nodiscard]] int delay() const noexcept { return 10 * decimation_ + box_half_; }
+  [[nodiscard]] int delay() const noexcept { return delay_; }
   /// Values before this one come out never: the filters reach back that far.
   [[nodiscard]] int first() const noexcept { return (kFirstBox + kTapsHalf + 1) * decimation_; }
 
@@ -48,24 +57,22 @@ class Baseline {
   static constexpr std::size_t kRing = 1024;
   static constexpr std::size_t kMaxBox = 3 * kMaxDecimation - 2;
 
-  [[nodiscard]] double at(std::int64_t n) const noexcept {
-    return ring_[static_cast<std::size_t>(n) & (kRing - 1)];
-  }
-  void low_rate_step(std::int64_t instant) noexcept;
+  void low_rate_step() noexcept;
 
   int decimation_;
   int box_half_;
+  int delay_;
+  int first_known_;  // the sample with which the first value comes out
   Corner corner_{Corner::k0p7Hz};
   std::int64_t count_{0};
   // Counted along, because a division costs more than everything else that a sample needs.
-  std::int64_t instant_{0};   // the next of the low rate
-  std::int64_t next_box_{0};  // the sample that completes its boxes
-  std::int64_t knot_{0};      // of the next value that comes out
-  std::size_t place_{0};      // samples behind it
+  std::int64_t instant_{0};        // the next of the low rate
+  std::int64_t next_box_{0};       // the sample that completes its boxes
+  std::size_t place_{0};           // of the next value that comes out, behind its knot
+  std::array<double, 4> knots_{};  // the latest spline coefficients, the newest of this value
   std::array<double, kMaxBox> box_{};
   std::array<std::array<double, 4>, kMaxDecimation> spline_{};
-  std::array<double, 32> low_{};          // box outputs, ring by low-rate instant
-  std::array<double, 8> coefficients_{};  // spline coefficients, ring by low-rate instant
+  std::array<double, 32> low_{};  // box outputs, ring by low-rate instant
   std::array<double, kRing> ring_{};
 };
 

@@ -49,13 +49,14 @@ class NoiseMeter {
   /// Robbins and Monro's recursion in the logarithm: up when a value lies above, down when below.
   void follow(double magnitude) noexcept {
     if (count_ == 0) quantile_ = magnitude;
-    const double step = std::fmax(kSlowest, 4.0 / static_cast<double>(count_ + 8));
+    const double step = count_ < kSettled ? 4.0 / static_cast<double>(count_ + 8) : kSlowest;
     quantile_ *= magnitude > quantile_ ? 1.0 + step * kQuantile : 1.0 - step * (1.0 - kQuantile);
   }
 
   static constexpr double kQuantile = 0.25;
   static constexpr double kQuantileOfNormal = 0.31864;  // of |x|, standard normal
   static constexpr double kSlowest = 0.002;
+  static constexpr std::int64_t kSettled = 1992;  // where 4 / (count + 8) has come down to that
   static constexpr double kPi = 3.141592653589793238;
   static constexpr int kHalf = 20;
   static constexpr double kWidth = 0.05;  // half-width of the pass band, of the sampling rate

@@ -18,12 +18,9 @@ class ShortIntegral {
 
   /// Takes x_n; returns V_(n-4). Meaningful once kPoints values were given.
   constexpr double update(double x) noexcept {
-    x_[next_] = x_[next_ + kPoints] = x;
-    if (++next_ == kPoints) next_ = 0;
-    const double* oldest = &x_[next_];
+    x_[++newest_ % kRing] = x;
     double sum = 0.0;
-    for (std::size_t j = 0; j < kWeights.size(); ++j)
-      sum += kWeights[j] * (oldest[5 + j] + oldest[4 - j]);
+    for (std::size_t j = 0; j < kWeights.size(); ++j) sum += kWeights[j] * (at(4 - j) + at(5 + j));
     integral_ += step_s_ * sum;
     return integral_;
   }
@@ -36,14 +33,20 @@ class ShortIntegral {
   }
 
  private:
+  static constexpr std::size_t kRing = 16;
+  /// So many samples before the newest. One by one out of a ring: four at once would have to wait
+  /// for the last one written.
+  [[nodiscard]] constexpr double at(std::size_t age) const noexcept {
+    return x_[(newest_ - age) % kRing];
+  }
+
   // The last weight is set so that the sum is exactly one half: a constant integrates to a ramp.
   static constexpr std::array<double, 5> kWeights{.58196271, -.11699357, .05002951, -.02081392,
                                                   .00581527};
   double step_s_;
   double integral_{0.0};
-  std::array<double, std::size_t{2} * kPoints>
-      x_{};  // each twice, so that nothing is shifted along
-  std::size_t next_{0};
+  std::array<double, kRing> x_{};
+  std::size_t newest_{0};
 };
 
 }  // namespace dampline

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/wide.hpp"
-
 namespace dampline {
 
 Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) noexcept {
@@ -22,25 +20,48 @@ SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
              ChannelLane{config.channels[2], config.sample_rate_hz}},
       meter_{config.sample_rate_hz} {}
 
-DAMPLINE_WIDE void SampleAssembler::push(const CanFrame& frame) noexcept {
+void SampleAssembler::push(const CanFrame& frame) noexcept {
   ++counts_.frames;
   if (frame.error) {
     ++counts_.error;
     return;
   }
   bool wanted = false;
-  for (ChannelLane& lane : lanes_) {
-    if (!lane.wants(frame)) continue;
+  bool far = false;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!lanes_[c].wants(frame)) continue;
     wanted = true;
-    if (paused(lane, frame.time_ns)) restart(frame.time_ns);
-    lane.push(frame);
+    ChannelLane& lane = lanes_[c];
+    if (!lane.push_next(frame)) push_unusual(lane, frame);
+    far |= lane.newest() - lane_offset_[c] >= next_tick_ + kWaitTicks;
   }
   if (!wanted) {
     ++counts_.foreign;
     return;
   }
-  if (!aligned_ && ready_to_align(kAlignFrames)) align();
-  if (aligned_) settle(kWaitTicks);
+  if (!aligned_) {
+    if (!ready_to_align(kAlignFrames)) return;
+    align();
+    far = true;
+  }
+  // Nearly always nothing, or one instant that is whole. A channel that did not advance is not far
+  // ahead: the last frame left nothing to settle.
+  for (Readings readings; far || !waits(); ++next_tick_) {
+    if (far || find_all(next_tick_, readings) < static_cast<int>(kChannels))
+      return settle(kWaitTicks);
+    emit(readings);
+  }
+}
+
+void SampleAssembler::push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept {
+  if (paused(lane, frame.time_ns)) restart(frame.time_ns);
+  lane.push(frame);
+}
+
+bool SampleAssembler::waits() const noexcept {
+  for (std::size_t c = kChannels; c-- > 0;)
+    if (lanes_[c].newest() - lane_offset_[c] < next_tick_) return true;
+  return false;
 }
 
 void SampleAssembler::flush() noexcept {
@@ -50,11 +71,8 @@ void SampleAssembler::flush() noexcept {
 }
 
 bool SampleAssembler::paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept {
-  // Nearly always: a line's tick is the lane's newest, or a few ahead of it.
-  if (!lane.started() || lane.line().is_near(time_ns, 0.5 * static_cast<double>(kPauseTicks)))
-    return false;
-  return lane.line().tick_at(time_ns) - static_cast<double>(lane.newest()) >
-         static_cast<double>(kPauseTicks);
+  return lane.started() && lane.line().tick_at(time_ns) - static_cast<double>(lane.newest()) >
+                               static_cast<double>(kPauseTicks);
 }
 
 // Ticks go on by time, as well as the nominal line of the frame channel knows.
@@ -115,16 +133,8 @@ std::int64_t SampleAssembler::newest() const noexcept {
   return tick;
 }
 
-std::int64_t SampleAssembler::oldest_lane() const noexcept {
-  std::int64_t tick = lanes_[0].newest() - lane_offset_[0];
-  for (std::size_t c = 1; c < kChannels; ++c)
-    tick = std::min(tick, lanes_[c].newest() - lane_offset_[c]);
-  return tick;
-}
-
 void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
   const std::int64_t last = newest();
-  if (oldest_lane() < next_tick_ && last - next_tick_ < wait_ticks) return;  // a channel is to come
   // Two stretches at most can hold readings: the one before a jump, and the one that ends now.
   for (int stretch = 0; stretch < 2; ++stretch) {
     const std::int64_t end = std::min(last, next_tick_ + kLaneSpan);
@@ -145,21 +155,19 @@ void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
 }
 
 void SampleAssembler::emit(const Readings& readings) noexcept {
-  Sample sample;
-  sample.tick = next_tick_;
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    const Reading& reading = *readings[c];
-    sample.accel_mps2[c] = reading.accel_mps2;
-    sample.saturated =
-        static_cast<std::uint8_t>(sample.saturated | (unsigned{reading.saturated} << c));
-  }
-  sample.time_ns = readings[0]->time_ns;
   if (ready_count_ == kReady) {
     ++counts_.overflow;
     return;
   }
-  ready_[(ready_first_ + ready_count_) % kReady] = sample;
-  ++ready_count_;
+  Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
+  sample.tick = next_tick_;
+  sample.time_ns = readings[0]->time_ns;
+  unsigned saturated = 0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    sample.accel_mps2[c] = readings[c]->accel_mps2;
+    saturated |= unsigned{readings[c]->saturated} << c;
+  }
+  sample.saturated = static_cast<std::uint8_t>(saturated);
   ++counts_.samples;
   meter_.update(sample.tick, sample.time_ns);
 }

@@ -62,6 +62,7 @@ class SampleAssembler {
   static constexpr std::size_t kReady = 128;
 
   using Readings = std::array<const Reading*, kChannels>;
+  void push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept;
   void align() noexcept;
   void settle(std::int64_t wait_ticks) noexcept;
   void emit(const Readings& readings) noexcept;
@@ -70,8 +71,8 @@ class SampleAssembler {
   /// How many channels have the tick; null for the others.
   int find_all(std::int64_t tick, Readings& readings) const noexcept;
   [[nodiscard]] std::int64_t newest() const noexcept;
-  /// The newest tick of the channel that is behind the others.
-  [[nodiscard]] std::int64_t oldest_lane() const noexcept;
+  /// A channel has nothing yet of the next instant, nor of a later one.
+  [[nodiscard]] bool waits() const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 

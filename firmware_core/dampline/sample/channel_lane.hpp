@@ -45,6 +45,9 @@ class ChannelLane {
   }
   /// Precondition: wants(frame).
   void push(const CanFrame& frame) noexcept;
+  /// push() where the frame is the next one by its counter, and in time; else false, and nothing is
+  /// done.
+  [[nodiscard]] bool push_next(const CanFrame& frame) noexcept;
   void flush() noexcept;
   /// Forgets readings and sequence, keeps the counts. The next frame gets first_tick.
   void restart(std::int64_t first_tick) noexcept;
@@ -83,6 +86,8 @@ class ChannelLane {
   SignalReader counter_;
   SignalReader multiplexor_;
   FullScale full_scale_;
+  int needed_;            // payload bytes
+  bool counting_{false};  // started, by a counter, and every frame has the signals
   double rate_hz_;
   CounterSequence by_counter_;
   TimeSequence by_time_;
@@ -93,83 +98,5 @@ class ChannelLane {
   std::uint64_t suspects_{0};  // not used, and perhaps a restarted node's first frames
   ChannelCounts counts_;
 };
-
-inline void ChannelLane::store_next(const Reading& reading) noexcept {
-  const std::int64_t step = since_start_ == 0 ? 1 : reading.tick - newest_;
-  if (step > 1) {
-    ++counts_.gaps;
-    counts_.lost += static_cast<std::uint64_t>(step - 1);
-  }
-  kept_[slot_of(reading.tick)] = reading;
-  newest_ = reading.tick;
-  ++since_start_;
-  ++counts_.readings;
-  if (reading.saturated) ++counts_.saturated;
-}
-
-inline void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noexcept {
-  const Placement placed = by_counter_.place(counter, reading.time_ns);
-  reading.tick = placed.tick;
-  if (placed.streak <= 1) suspects_ = 0;
-  switch (placed.place) {
-    case Place::kRealigned:
-      ++counts_.realigned;
-      counts_.misjudged += suspects_;
-      [[fallthrough]];
-    case Place::kNext:
-      store_next(reading);
-      break;
-    case Place::kBehind:
-      store_late(reading);
-      break;
-    case Place::kOutOfStep:
-      ++counts_.out_of_step;
-      break;
-  }
-}
-
-inline bool ChannelLane::decode(const CanFrame& frame, Reading& reading,
-                                std::uint64_t& counter) noexcept {
-  if (config_.multiplexed) {
-    if (!multiplexor_.fits(frame)) {
-      ++counts_.wrong_length;
-      return false;
-    }
-    if (multiplexor_.bits(frame) != config_.multiplexor_value) {
-      ++counts_.other_page;
-      return false;
-    }
-  }
-  if (!accel_.fits(frame) || (config_.has_counter && !counter_.fits(frame))) {
-    ++counts_.wrong_length;
-    return false;
-  }
-  const std::int64_t raw = accel_.raw(frame);
-  reading.time_ns = frame.time_ns;
-  reading.accel_mps2 = accel_.physical(raw);
-  reading.saturated = full_scale_.reached(raw);
-  if (config_.has_counter) counter = counter_.bits(frame);
-  return true;
-}
-
-inline void ChannelLane::push(const CanFrame& frame) noexcept {
-  if (frame.remote) {
-    ++counts_.not_data;
-    return;
-  }
-  Reading reading;
-  std::uint64_t counter = 0;
-  if (!decode(frame, reading, counter)) return;
-  if (since_start_ == 0) {
-    by_counter_.start(first_tick_, counter, reading.time_ns);
-    by_time_.start(first_tick_, reading.time_ns);
-    reading.tick = first_tick_;
-    store_next(reading);
-  } else if (config_.has_counter) {
-    number_by_counter(reading, counter);
-  } else {
-    number_by_time(reading);
-  }
-}
 
 }  // namespace dampline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dampline {
 namespace {
@@ -14,14 +15,45 @@ CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
     : line_{rate_hz, kPeriodRange},
       mask_{counter_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << counter_bits) - 1},
       wrap_{std::ldexp(1.0, static_cast<int>(counter_bits))},
-      tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)} {}
+      tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)},
+      usual_{std::min(0.49 * wrap_, kBurstTicks)} {}
 
 void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
                             std::int64_t time_ns) noexcept {
   line_.start(tick, time_ns);
-  newest_ = tick;
   newest_counter_ = counter;
   streak_ = 0;
+}
+
+std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
+  const std::uint64_t ahead = (counter - newest_counter_) & mask_;
+  const double due_ahead = due_tick - static_cast<double>(newest());
+  if (ahead == 1 && std::abs(due_ahead - 1.0) < 0.49 * wrap_) return newest() + 1;
+  const double wraps = std::nearbyint((due_ahead - static_cast<double>(ahead)) / wrap_);
+  // Modulo 2^64 on purpose: a counter of 64 bits that goes back one wraps to a step of -1.
+  const std::uint64_t step =
+      ahead + (mask_ + 1) * static_cast<std::uint64_t>(static_cast<std::int64_t>(wraps));
+  return newest() + static_cast<std::int64_t>(step);
+}
+
+bool CounterSequence::fits(std::int64_t tick, double due_tick) const noexcept {
+  const double off = std::abs(due_tick - static_cast<double>(tick));
+  if (tick == newest() + 1) return off <= kBurstTicks;
+  return tick > newest() && off <= tolerance_;
+}
+
+Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t counter,
+                                  std::int64_t time_ns) noexcept {
+  line_.update(tick, time_ns);
+  newest_counter_ = counter;
+  return {place, tick, std::exchange(streak_, 0)};
+}
+
+Placement CounterSequence::place(std::uint64_t counter, std::int64_t time_ns) noexcept {
+  const double due_tick = line_.tick_at(time_ns);
+  const std::int64_t tick = resolve(counter, due_tick);
+  if (fits(tick, due_tick)) return accept(Place::kNext, tick, counter, time_ns);
+  return suspect(tick, counter, time_ns);
 }
 
 bool CounterSequence::continues_streak(std::uint64_t counter) const noexcept {
@@ -42,12 +74,12 @@ Placement CounterSequence::suspect(std::int64_t tick, std::uint64_t counter,
   streak_error_ += line_.tick_at(time_ns) - static_cast<double>(streak_tick_);
   if (streak_ >= kConfirmingFrames) {
     const double error = streak_error_ / static_cast<double>(streak_);
-    const bool counter_is_right = std::abs(error) <= tolerance_ && streak_tick_ > newest_;
+    const bool counter_is_right = std::abs(error) <= tolerance_ && streak_tick_ > newest();
     if (counter_is_right) return accept(Place::kNext, streak_tick_, counter, time_ns);
     const auto by_time = streak_tick_ + static_cast<std::int64_t>(std::llround(error));
-    return accept(Place::kRealigned, std::max(by_time, newest_ + 1), counter, time_ns);
+    return accept(Place::kRealigned, std::max(by_time, newest() + 1), counter, time_ns);
   }
-  const bool behind = tick <= newest_ && static_cast<double>(newest_ - tick) < kBurstTicks;
+  const bool behind = tick <= newest() && static_cast<double>(newest() - tick) < kBurstTicks;
   return {behind ? Place::kBehind : Place::kOutOfStep, tick, streak_};
 }
 

@@ -92,7 +92,8 @@ class SignalReader {
       : signal_{signal},
         needed_{bytes_needed(signal)},
         first_{signal.start_bit / 8U},
-        unused_{64U - signal.length} {
+        unused_{64U - signal.length},
+        used_{signal.is_signed ? ~std::uint64_t{0} : ~std::uint64_t{0} >> (64U - signal.length)} {
     const unsigned bit = signal.start_bit % 8U;
     const bool intel = signal.order == ByteOrder::kIntel;
     const unsigned before = intel ? bit : 7U - bit;
@@ -111,9 +112,8 @@ class SignalReader {
   /// Sign-extended where the signal is signed. An unsigned number of 64 bits wraps.
   /// Precondition: fits(frame).
   [[nodiscard]] constexpr std::int64_t raw(const CanFrame& frame) const noexcept {
-    const std::uint64_t aligned = top(frame);
-    if (signal_.is_signed) return static_cast<std::int64_t>(aligned) >> unused_;
-    return static_cast<std::int64_t>(aligned >> unused_);
+    const std::int64_t extended = static_cast<std::int64_t>(top(frame)) >> unused_;
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(extended) & used_);
   }
   [[nodiscard]] constexpr double physical(std::int64_t raw) const noexcept {
     return to_physical(signal_, raw);
@@ -131,6 +131,7 @@ class SignalReader {
   int needed_;
   unsigned first_;
   unsigned unused_;
+  std::uint64_t used_;  // bits of the number; all where the sign is extended
   unsigned left_{0};
   bool is_word_{false};  // eight bytes in a row hold it whole
 };

@@ -37,21 +37,22 @@ const SampleScreen::Held& SampleScreen::held(std::size_t age) const noexcept {
 
 DAMPLINE_WIDE bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
   newest_ = (newest_ + 1) % kCapacity;
-  ring_[newest_] = Held{sample, {}};
+  ring_[newest_].sample = sample;
+  ring_[newest_].verdict = {};
   ++count_;
   const bool paused =
       count_ > 1 && sample.tick - held(1).sample.tick > static_cast<std::int64_t>(window_);
+  for (std::size_t c = 0; config_.find_flat_tops && c < kChannels; ++c)
+    follow_extremes(runs_[c], sample.accel_mps2[c]);
   for (std::size_t c = 0; c < kChannels; ++c) {
     follow(runs_[c], sample.accel_mps2[c], sample.tick, paused);
-    if (config_.find_flat_tops) follow_extremes(runs_[c], sample.accel_mps2[c]);
     if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
     if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
   }
   for (std::size_t c = 0; sample.spoilt && c < kChannels; ++c) mark(c, 1, Verdict::kSpoilt);
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    judge_stuck(c);
-    if (config_.find_flat_tops) judge_flat_top(c);
-  }
+  for (std::size_t c = 0; c < kChannels; ++c)
+    if (runs_[c].stuck || holds(c, sample.tick)) judge_stuck(c);
+  for (std::size_t c = 0; config_.find_flat_tops && c < kChannels; ++c) judge_flat_top(c);
   if (count_ < window_) return false;
   take_oldest(out);
   return true;
@@ -111,8 +112,8 @@ void SampleScreen::follow_extremes(Run& run, double value) noexcept {
   }
 }
 
-bool SampleScreen::holds(std::size_t channel) const noexcept {
-  return held(0).sample.tick - runs_[channel].first_tick + 1 >= static_cast<std::int64_t>(window_);
+bool SampleScreen::holds(std::size_t channel, std::int64_t tick) const noexcept {
+  return tick - runs_[channel].first_tick + 1 >= static_cast<std::int64_t>(window_);
 }
 
 void SampleScreen::judge_stuck(std::size_t channel) noexcept {
@@ -121,9 +122,9 @@ void SampleScreen::judge_stuck(std::size_t channel) noexcept {
     mark(channel, 1, Verdict::kStuck);
     return;
   }
-  if (!holds(channel)) return;
+  const std::int64_t tick = held(0).sample.tick;
   for (std::size_t other = 0; other < kChannels; ++other) {
-    if (other == channel || holds(other) || !moved(other)) continue;
+    if (other == channel || holds(other, tick) || !moved(other)) continue;
     run.stuck = true;
     mark(channel, run.samples, Verdict::kStuck);
     return;

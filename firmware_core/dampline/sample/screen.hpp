@@ -73,9 +73,11 @@ class SampleScreen {
   void mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept;
   static void follow(Run& run, double value, std::int64_t tick, bool paused) noexcept;
   static void follow_extremes(Run& run, double value) noexcept;
+  /// Of a channel that holds one value, or was found stuck.
   void judge_stuck(std::size_t channel) noexcept;
   void judge_flat_top(std::size_t channel) noexcept;
-  [[nodiscard]] bool holds(std::size_t channel) const noexcept;  // one value for the whole window
+  /// One value for the whole window, up to this tick.
+  [[nodiscard]] bool holds(std::size_t channel, std::int64_t tick) const noexcept;
   [[nodiscard]] bool moved(std::size_t channel) const noexcept;
   [[nodiscard]] Held& held(std::size_t age) noexcept;
   [[nodiscard]] const Held& held(std::size_t age) const noexcept;

@@ -39,22 +39,41 @@ class TickLine {
   void update(std::int64_t tick, std::int64_t time_ns) noexcept {
     const auto steps = static_cast<double>(tick - tick_);
     const double predicted_ns = phase_ns_ + steps * period_ns_;
-    const double half_ns = 0.5 * period_ns_;
-    const double error_ns =
-        std::clamp(static_cast<double>(time_ns - time_ns_) - predicted_ns, -half_ns, half_ns);
+    const double off_ns = static_cast<double>(time_ns - time_ns_) - predicted_ns;
+    const double error_ns = limited(off_ns);
     if (frames_ < kMemory) set_gains(frames_ + 1.0);
-    phase_ns_ = predicted_ns + phase_gain_ * error_ns;
-    period_ns_ =
-        std::clamp(period_ns_ + period_gain_ * error_ns / steps, shortest_ns_, longest_ns_);
+    correct(predicted_ns + phase_gain_ * error_ns, period_gain_ * error_ns / steps);
     tick_ = tick;
-    const double whole_ns = std::floor(phase_ns_);
-    time_ns_ += static_cast<std::int64_t>(whole_ns);
-    phase_ns_ -= whole_ns;
   }
 
+  /// As update(tick() + 1, time_ns) where the time is within `ticks` of that tick's; else false,
+  /// and nothing is done.
+  [[nodiscard]] bool step(std::int64_t time_ns, double ticks) noexcept {
+    const double predicted_ns = phase_ns_ + period_ns_;
+    const double off_ns = static_cast<double>(time_ns - time_ns_) - predicted_ns;
+    if (!(std::abs(off_ns) < ticks * period_ns_)) return false;
+    const double error_ns = limited(off_ns);
+    if (frames_ < kMemory) set_gains(frames_ + 1.0);
+    correct(predicted_ns + phase_gain_ * error_ns, period_gain_ * error_ns);
+    ++tick_;
+    return true;
+  }
+
+  [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
   [[nodiscard]] std::int64_t time_ns() const noexcept { return time_ns_; }
 
  private:
+  [[nodiscard]] double limited(double off_ns) const noexcept {
+    const double half_ns = 0.5 * period_ns_;
+    return std::clamp(off_ns, -half_ns, half_ns);
+  }
+  /// `phase_ns` is positive: a step is a period at least, and the error half of one at most.
+  void correct(double phase_ns, double period_off_ns) noexcept {
+    period_ns_ = std::clamp(period_ns_ + period_off_ns, shortest_ns_, longest_ns_);
+    const auto whole_ns = static_cast<std::int64_t>(phase_ns);
+    time_ns_ += whole_ns;
+    phase_ns_ = phase_ns - static_cast<double>(whole_ns);
+  }
   void set_gains(double frames) noexcept {
     frames_ = frames;
     phase_gain_ = 2.0 * (2.0 * frames - 1.0) / (frames * (frames + 1.0));
