@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "app/explain/fault_veto.hpp"
 #include "app/explain/second_look.hpp"
 #include "app/explain/truck_verdict.hpp"
 #include "app/explain/twin_pass.hpp"
@@ -54,8 +53,7 @@ class CloserLook {
       if (twin) twin->take(sample);
     };
     const TruckPass pass = pass_of(config_, options_.source, reading);
-    effect::ExplainerConfig wanted = explainer_config(config_);
-    disallow_mimics(known.identified.faults, wanted);
+    effect::ExplainerConfig wanted = explainer_config(config_, known);
     wanted.known = &known.explanation;
     effect::Explanation out = explainer_.explain(*pass.diagnosis, wanted);
     if (late) left = lateness_left(*pass.diagnosis, twin.get(), out);

@@ -52,11 +52,18 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
   const auto explainer = std::make_unique<effect::Explainer>();
-  if (!judge_sums(config, *pass.diagnosis, *explainer, out))
-    throw RunError{fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
-                               options.source.path, pass.diagnosis->store().count())};
-  look_closer(config, options, pass, noise, *explainer, out);
-  look_again(config, options, pass, noise, *explainer, out);
+  for (auto needless = effect::Effect::kUnknown;;) {
+    if (!judge_sums(config, *pass.diagnosis, *explainer, out))
+      throw RunError{
+          fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
+                      options.source.path, pass.diagnosis->store().count())};
+    out.lateness = {};
+    look_closer(config, options, pass, noise, *explainer, out);
+    look_again(config, options, pass, noise, *explainer, out);
+    needless = needless_effect(out.explanation);
+    if (needless == effect::Effect::kUnknown) break;
+    out.needless[static_cast<std::size_t>(needless)] = true;
+  }
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
     out.validation.push_back(

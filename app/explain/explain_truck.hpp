@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Explained {
   LateChannel lateness;  ///< of a channel that was set right for the explanation
   bool withheld{false};  ///< faults of the data forbid to name an effect
   bool drifts{false};    ///< a parameter that changed explains more than any effect
+  /// By Effect: what looked like one at first and was none, and is no candidate any more.
+  std::array<bool, effect::kEffects> needless{};
   std::vector<Validated> validation;
   Signature signature;   ///< of what the final model leaves; rms 0: the record was read only once
   RunResult identified;  ///< what identify says of the same record

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/explain/signature_json.hpp"
+#include "app/explain/truck_verdict.hpp"
 
 namespace dampline::app {
 namespace {
@@ -30,7 +31,7 @@ Json parameters_of(const Step& step) {
 
 /// Base or final model.
 Json model(const Explanation& e, bool final) {
-  const effect::ModelFit& fit = final ? e.final : e.base;
+  const double held_out_nmse = final ? e.final.held_out_nmse : base_error(e);
   Json list = Json::array();
   list.push_back(parameter("coulomb", final ? e.final_coulomb_n : e.base_coulomb_n, "N"));
   list.push_back(
@@ -39,8 +40,8 @@ Json model(const Explanation& e, bool final) {
   for (std::size_t i = 0; i < steps; ++i)
     for (const Json& p : parameters_of(e.step[i])) list.push_back(p);
   return {{"terms", terms_of(e, steps)},
-          {"held_out_nmse", fit.held_out_nmse},
-          {"held_out_rrse", std::sqrt(fit.held_out_nmse)},
+          {"held_out_nmse", held_out_nmse},
+          {"held_out_rrse", std::sqrt(held_out_nmse)},
           {"parameters", list}};
 }
 
@@ -78,7 +79,7 @@ Json step_json(const Explanation& e, std::size_t i) {
           {"held_out_nmse_after", step.held_out_nmse_after},
           {"parameters", parameters_of(step)},
           {"evidence",
-           {{"gain", step.gain},
+           {{"gain", 1.0 - step.held_out_nmse_after / step.held_out_nmse_before},
             {"block_t", step.block_t},
             {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
           {"note", note_of(e, step)},
@@ -102,21 +103,48 @@ bool is_unknown(const Explanation& e) {
          e.conclusion == effect::Conclusion::kPartlyExplained;
 }
 
-/// A parameter that changed, as the one step; its errors are those of the base, less its gain.
-Json drift_step(const Explanation& e, const DriftFinding& drift) {
-  auto terms = terms_of(e, 0);
-  terms.emplace_back("time_drift");
+Json drift_parameters(const DriftFinding& drift) {
   Json list = Json::array();
   list.push_back(parameter(("time_drift_" + drift.parameter).c_str(), drift.change_percent, "%"));
   if (drift.step)
     list.push_back(parameter("time_drift_time", {drift.time_s, 0.29 * drift.interval_s}, "s"));
+  return list;
+}
+
+std::vector<std::string> drift_terms(const Explanation& e) {
+  auto terms = terms_of(e, 0);
+  terms.emplace_back("time_drift");
+  return terms;
+}
+
+/// A parameter that changed, as the one step; its errors are those of the base, less its gain.
+Json drift_step(const Explained& explained) {
+  const Explanation& e = explained.explanation;
+  const DriftFinding& drift = *explained.identified.faults.drift;
+  const double ratio = left_over_floor(explained);
   return {{"effect", "time_drift"},
-          {"terms", terms},
+          {"terms", drift_terms(e)},
           {"held_out_nmse_before", e.base.held_out_nmse},
-          {"held_out_nmse_after", e.base.held_out_nmse * (1.0 - drift.gain)},
-          {"parameters", list},
-          {"evidence", {{"gain", drift.gain}, {"kind", drift.step ? "step" : "drift"}}},
+          {"held_out_nmse_after", left_nmse(explained)},
+          {"parameters", drift_parameters(drift)},
+          {"evidence",
+           {{"gain", drift.gain},
+            {"kind", drift.step ? "step" : "drift"},
+            {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
+          {"note", ratio > effect::kIncompleteAbove ? Json("like time_drift, law incomplete")
+                                                    : Json(nullptr)},
           {"runners_up", Json::array()}};
+}
+
+/// The base with a parameter that changes; friction and spring are those of the whole record.
+Json drifting_model(const Explained& explained) {
+  Json out = model(explained.explanation, false);
+  out["terms"] = drift_terms(explained.explanation);
+  out["held_out_nmse"] = left_nmse(explained);
+  out["held_out_rrse"] = std::sqrt(left_nmse(explained));
+  for (const Json& p : drift_parameters(*explained.identified.faults.drift))
+    out["parameters"].push_back(p);
+  return out;
 }
 
 }  // namespace
@@ -142,18 +170,18 @@ std::string to_json(const Explained& explained) {
                           {"nmse_before", v.nmse_before},
                           {"nmse_after", v.nmse_after}});
   const bool drifts = explained.drifts;
-  if (drifts) steps.push_back(drift_step(e, *explained.identified.faults.drift));
+  if (drifts) steps.push_back(drift_step(explained));
   const bool unknown = !explained.withheld && !drifts && is_unknown(e);
   if (unknown && e.step_count == 0)
     steps.push_back(unknown_step(terms_of(e, 0), e.base.held_out_nmse, explained.signature));
-  const auto verdict = drifts ? effect::Conclusion::kPartlyExplained : e.conclusion;
-  const Json json{{"verdict", effect::name_of(verdict)},
+  const double ratio = left_over_floor(explained);
+  const Json json{{"verdict", effect::name_of(conclusion_of(explained))},
                   {"base", model(e, false)},
                   {"steps", steps},
-                  {"final", model(e, true)},
+                  {"final", drifts ? drifting_model(explained) : model(e, true)},
                   {"rejected", judged_json(rejected_of(e))},
                   {"floor_nmse", e.floor_nmse > 0.0 ? Json(e.floor_nmse) : Json(nullptr)},
-                  {"left_over_floor", e.floor_nmse > 0.0 ? Json(floor_ratio(e)) : Json(nullptr)},
+                  {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)},
                   {"validation", validation},
                   {"faults", faults_of(explained.identified.faults)},
                   {"force", "moving mass times the frame's deceleration, over 1 Hz"},

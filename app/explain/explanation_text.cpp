@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/explain/explanation_json.hpp"
+#include "app/explain/truck_verdict.hpp"
 #include "app/text/quantity.hpp"
 
 namespace dampline::app {
@@ -50,22 +51,29 @@ std::string fault_text(const Explained& explained) {
   for (const FaultFinding& f : faults.list)
     text += fmt::format("  fault              {}, {}, at {:.1f} s\n", f.name, f.channel, f.time_s);
   if (explained.withheld) text += "  the data have faults that look like effects: none is named\n";
-  if (faults.drift) text += fmt::format("  time_drift         {}\n", describe_drift(*faults.drift));
+  if (faults.drift && !explained.drifts)
+    text += fmt::format("  time_drift         {}\n", describe_drift(*faults.drift));
   return text;
+}
+
+std::string drift_text(const Explained& explained) {
+  return fmt::format("+ {:<18} held-out error {:.4g} -> {:.4g} (nmse)\n    {}\n", "time_drift",
+                     explained.explanation.base.held_out_nmse, left_nmse(explained),
+                     describe_drift(*explained.identified.faults.drift));
 }
 
 }  // namespace
 
 std::string summarize(const Explained& explained) {
   const Explanation& e = explained.explanation;
-  std::string text =
-      explained.drifts
-          ? "partly_explained: a parameter changed while the record was made\n"
-          : fmt::format("{}: {}\n", effect::name_of(e.conclusion), sentence(e.conclusion));
+  std::string text = fmt::format(
+      "{}: {}\n", effect::name_of(conclusion_of(explained)),
+      explained.drifts ? "a parameter changed while the record was made" : sentence(e.conclusion));
   text += fault_text(explained);
   text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n", "base",
-                      e.base.held_out_nmse, quantity(e.base_coulomb_n, "N"),
+                      base_error(e), quantity(e.base_coulomb_n, "N"),
                       quantity(e.base_stiffness_npm, "N/m"));
+  if (explained.drifts) text += drift_text(explained);
   for (std::size_t i = 0; i < e.step_count; ++i) text += step_text(e.step[i]);
   if (e.step_count > 0)
     text += fmt::format("  {:<18} held-out error {:.4g} (nmse), coulomb {}, stiffness {}\n",
@@ -74,7 +82,7 @@ std::string summarize(const Explained& explained) {
   if (e.floor_nmse > 0.0)
     text += fmt::format(
         "  {:<18} {:.4g} (nmse) by sensors and rounding alone; left: {:.2f} times that\n", "floor",
-        e.floor_nmse, floor_ratio(e));
+        e.floor_nmse, left_over_floor(explained));
   if (e.step_count > 0 && floor_ratio(e) > effect::kIncompleteAbove)
     text += fmt::format("  {:<18} like {}, law incomplete\n", "",
                         effect::name_of(e.step[0].chosen.effect));

@@ -2,6 +2,7 @@
 #include "app/explain/truck_verdict.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,16 @@
 
 namespace dampline::app {
 namespace {
+
+constexpr double kBelowFloor = 0.85;
+constexpr double kFaintGain = 0.025;
+
+/// What is already less than sensors and rounding leave has no room for one effect more; for the
+/// first, which may be large beside a floor that is too high, only where it gains little.
+bool is_below_floor(const effect::Step& step, bool first, double floor_nmse) {
+  if (first && step.gain > kFaintGain) return false;
+  return step.held_out_nmse_before < kBelowFloor * floor_nmse;
+}
 
 bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -28,16 +39,52 @@ effect::ExplainerConfig explainer_config(const Config& config) {
   return out;
 }
 
+effect::ExplainerConfig explainer_config(const Config& config, const Explained& known) {
+  effect::ExplainerConfig out = explainer_config(config);
+  disallow_mimics(known.identified.faults, out);
+  for (std::size_t i = 0; i < effect::kEffects; ++i)
+    out.allowed[i] = out.allowed[i] && !known.needless[i];
+  return out;
+}
+
 bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
                 effect::Explainer& explainer, Explained& out) {
-  effect::ExplainerConfig wanted = explainer_config(config);
-  disallow_mimics(out.identified.faults, wanted);
-  out.explanation = explainer.explain(diagnosis, wanted);
+  out.explanation = explainer.explain(diagnosis, explainer_config(config, out));
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
   out.withheld = forbids_naming(out.identified.faults);
   out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);
   if (out.withheld || out.drifts) withhold_effects(out.explanation);
   return true;
+}
+
+effect::Effect needless_effect(const effect::Explanation& e) noexcept {
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    const effect::Step& step = e.step[i];
+    const Estimate& first = step.parameter[0].estimate;
+    if (step.chosen.effect == effect::Effect::kTimeSkew && std::abs(first.value) < 2.0 * first.std)
+      return step.chosen.effect;
+    if (is_below_floor(step, i == 0, e.floor_nmse)) return step.chosen.effect;
+  }
+  return effect::Effect::kUnknown;
+}
+
+double left_nmse(const Explained& explained) noexcept {
+  const effect::Explanation& e = explained.explanation;
+  if (!explained.drifts) return e.final.held_out_nmse;
+  return e.base.held_out_nmse * (1.0 - explained.identified.faults.drift->gain);
+}
+
+double left_over_floor(const Explained& explained) noexcept {
+  const effect::Explanation& e = explained.explanation;
+  if (!explained.drifts) return floor_ratio(e);
+  return e.floor_nmse > 0.0 ? left_nmse(explained) / e.floor_nmse : 0.0;
+}
+
+effect::Conclusion conclusion_of(const Explained& explained) noexcept {
+  if (!explained.drifts) return explained.explanation.conclusion;
+  const double ratio = left_over_floor(explained);
+  return ratio > 0.0 && ratio < effect::kIncompleteAbove ? effect::Conclusion::kExplained
+                                                         : effect::Conclusion::kPartlyExplained;
 }
 
 }  // namespace dampline::app

@@ -184,6 +184,20 @@ TEST(SampleScreen, SeesNoFlatTopInPeaksThatAreWhole) {
   EXPECT_TRUE(with(screened({.find_flat_tops = true}, clipped(1e9)), Verdict::kSaturated).empty());
 }
 
+/// Slow beside the rate and coarse beside its step: tops of several equal values, which nothing cut.
+TEST(SampleScreen, SeesNoFlatTopInARoundOne) {
+  auto samples = moving(3000);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double t = static_cast<double>(i) / 1000.0;
+    const double peak = i % 1400 > 1000 && i % 1400 < 1120 ? 8.0 : 0.2;
+    const double value = peak * std::sin(2.0 * M_PI * t / 0.24);
+    samples[i].accel_mps2[0] = 0.024 * std::round(value / 0.024);
+  }
+  EXPECT_TRUE(with(screened({.find_flat_tops = true}, samples), Verdict::kSaturated).empty());
+  for (Sample& s : samples) s.accel_mps2[0] = std::min(s.accel_mps2[0], 0.024 * 240);
+  EXPECT_GT(with(screened({.find_flat_tops = true}, samples), Verdict::kSaturated).size(), 20U);
+}
+
 TEST(SampleScreen, RefusesAConfigurationThatCannotWork) {
   EXPECT_TRUE(SampleScreen::check({}).ok());
   EXPECT_FALSE(SampleScreen::check({.sample_rate_hz = 1000.0}).ok());

@@ -26,6 +26,11 @@ const char* name_of(Conclusion conclusion) noexcept {
   return "unexplained";
 }
 
+double base_error(const Explanation& e) noexcept {
+  const bool restated = e.step_count > 0 && e.base_restated_nmse > 0.0;
+  return restated ? e.base_restated_nmse : e.base.held_out_nmse;
+}
+
 double floor_ratio(const Explanation& e) noexcept {
   if (!(e.floor_nmse > 0.0)) return 0.0;
   double left = e.final.held_out_nmse;

@@ -245,6 +245,7 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   for (std::size_t i = 0; i + out.base_count < out.model.count; ++i) {
     refine(out.model, out.base_count + i, out.final, out.step[i]);
   }
+  restate(out);
   out.floor_nmse = config.floor_nmse;
   describe(config.moving_mass_kg, out);
   conclude(0, out);

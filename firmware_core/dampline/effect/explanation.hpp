@@ -43,7 +43,7 @@ struct Step {
   double line_offset{0.0};  ///< of a mode between its line of the grid and the next
   double held_out_nmse_before{0.0};
   double held_out_nmse_after{0.0};
-  double gain{0.0};           ///< 1 - after / before
+  double gain{0.0};           ///< 1 - after / before, in the weights of the model before
   double block_t{0.0};        ///< mean over deviation of the mean of the entries' improvements
   double coefficient_t{0.0};  ///< its first coefficient over the deviation
   std::size_t runner_up_count{0};
@@ -58,13 +58,14 @@ struct Explanation {
   ModelFit base;
   ModelFit final;
   Model base_model;
-  Model model;                 ///< the final one: base, then steps
-  Grids grids;                 ///< of the effects' variants
-  std::size_t base_count{0};   ///< effects of the base
-  ScaleWeights base_weight{};  ///< of the scales in base's errors
-  ScaleWeights weight{};       ///< of the scales in final's errors
-  double base_target{0.0};     ///< sum of squares that base's errors are shares of
-  double target{0.0};          ///< the same of final's
+  Model model;                     ///< the final one: base, then steps
+  Grids grids;                     ///< of the effects' variants
+  std::size_t base_count{0};       ///< effects of the base
+  ScaleWeights base_weight{};      ///< of the scales in base's errors
+  ScaleWeights weight{};           ///< of the scales in final's errors
+  double base_restated_nmse{0.0};  ///< held-out error of base in final's weights; 0: no steps
+  double base_target{0.0};         ///< sum of squares that base's errors are shares of
+  double target{0.0};              ///< the same of final's
   std::size_t step_count{0};
   std::array<Step, kMostSteps> step{};
   Step rejected;                ///< the best candidate that did not pass, when there was one
@@ -76,6 +77,9 @@ struct Explanation {
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
 };
 
+/// Held-out error of the base in the weights of the final model, which the steps and the final
+/// error are in.
+[[nodiscard]] double base_error(const Explanation& explanation) noexcept;
 /// What is left over what a complete model leaves; 0 where that is unknown. What impacts leave that
 /// were named does not count.
 [[nodiscard]] double floor_ratio(const Explanation& explanation) noexcept;

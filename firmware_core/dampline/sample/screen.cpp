@@ -11,6 +11,8 @@ namespace dampline {
 namespace {
 constexpr double kStepsMoved = 8.0;
 constexpr double kFlatTopRms = 4.0;  // smaller extremes repeat by chance
+constexpr double kSteepSteps = 6.0;
+constexpr double kSameValue = 1e-9;  // rounding of a value that was printed
 }  // namespace
 
 Result<ScreenConfig> SampleScreen::check(const ScreenConfig& config) noexcept {
@@ -98,6 +100,9 @@ void SampleScreen::follow(Run& run, double value, std::int64_t tick, bool paused
 
 void SampleScreen::follow_extremes(Run& run, double value) noexcept {
   if (!std::isfinite(value)) return;
+  const double size = std::abs(value - run.value);
+  if (run.count > 0.0 && size > kSameValue && (run.step_mps2 == 0.0 || size < run.step_mps2))
+    run.step_mps2 = size;
   run.count += 1.0;
   const double off = value - run.mean;
   run.mean += off / run.count;
@@ -145,6 +150,17 @@ bool SampleScreen::moved(std::size_t channel) const noexcept {
   return highest - lowest > (step > 0.0 ? kStepsMoved * step : config_.moved_mps2);
 }
 
+/// The top of a parabola that a coarse step makes equal for n samples is three steps lower n / 2
+/// samples before them; one that is cut off comes from farther below.
+bool SampleScreen::rises_steeply(std::size_t channel) const noexcept {
+  const Run& run = runs_[channel];
+  const auto before = static_cast<std::size_t>(run.samples + (run.samples + 1) / 2 - 1);
+  if (before >= count_) return true;
+  const double known = config_.step_mps2[channel];
+  const double step = known > 0.0 ? known : run.step_mps2;
+  return std::abs(run.value - held(before).sample.accel_mps2[channel]) > kSteepSteps * step;
+}
+
 void SampleScreen::judge_flat_top(std::size_t channel) noexcept {
   Run& run = runs_[channel];
   if (run.count < static_cast<double>(window_)) return;
@@ -157,7 +173,8 @@ void SampleScreen::judge_flat_top(std::size_t channel) noexcept {
   }
   const double rms = std::sqrt(run.sum_squares / run.count);
   const double magnitude = std::abs(run.value - run.mean);
-  if (run.samples < kFlatTop || magnitude <= std::max(kFlatTopRms * rms, config_.moved_mps2))
+  if (run.samples < kFlatTop || magnitude <= std::max(kFlatTopRms * rms, config_.moved_mps2) ||
+      !rises_steeply(channel))
     return;
   flat = true;
   mark(channel, run.samples, Verdict::kSaturated);

@@ -57,7 +57,8 @@ class SampleScreen {
     std::int64_t samples{0};
     bool stuck{false};
     // Where flat tops are looked for, what the channel has reached so far.
-    double count{0.0};  // of finite values, their mean and sum of squares about it
+    double step_mps2{0.0};  // least change so far
+    double count{0.0};      // of finite values, their mean and sum of squares about it
     double mean{0.0};
     double sum_squares{0.0};
     double lowest{0.0};
@@ -72,10 +73,12 @@ class SampleScreen {
 
   void mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept;
   static void follow(Run& run, double value, std::int64_t tick, bool paused) noexcept;
+  /// Before the value joins the run.
   static void follow_extremes(Run& run, double value) noexcept;
   /// Of a channel that holds one value, or was found stuck.
   void judge_stuck(std::size_t channel) noexcept;
   void judge_flat_top(std::size_t channel) noexcept;
+  [[nodiscard]] bool rises_steeply(std::size_t channel) const noexcept;
   /// One value for the whole window, up to this tick.
   [[nodiscard]] bool holds(std::size_t channel, std::int64_t tick) const noexcept;
   [[nodiscard]] bool moved(std::size_t channel) const noexcept;
