@@ -49,7 +49,7 @@ std::vector<JudgedCandidate> runners_up_of(const Step& step) {
   std::vector<JudgedCandidate> out;
   for (std::size_t r = 0; r < step.runner_up_count; ++r) {
     const effect::RunnerUp& u = step.runner_up[r];
-    out.push_back({effect::name_of(u.effect), u.held_out_nmse, u.gain, u.block_t});
+    out.push_back({effect::name_of(u.effect), error_beside(step, u), u.gain, u.block_t});
   }
   return out;
 }
@@ -75,11 +75,11 @@ Json step_json(const Explanation& e, std::size_t i) {
   const double ratio = floor_ratio(e);
   return {{"effect", effect::name_of(step.chosen.effect)},
           {"terms", terms_of(e, i + 1)},
-          {"held_out_nmse_before", step.held_out_nmse_before},
-          {"held_out_nmse_after", step.held_out_nmse_after},
+          {"held_out_nmse_before", step.restated_before},
+          {"held_out_nmse_after", step.restated_after},
           {"parameters", parameters_of(step)},
           {"evidence",
-           {{"gain", 1.0 - step.held_out_nmse_after / step.held_out_nmse_before},
+           {{"gain", 1.0 - step.restated_after / step.restated_before},
             {"block_t", step.block_t},
             {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
           {"note", note_of(e, step)},

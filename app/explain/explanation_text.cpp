@@ -34,14 +34,15 @@ const char* sentence(effect::Conclusion conclusion) {
 
 std::string step_text(const effect::Step& step) {
   std::string text = fmt::format("+ {:<18} held-out error {:.4g} -> {:.4g} (nmse), t {:.1f}\n",
-                                 effect::name_of(step.chosen.effect), step.held_out_nmse_before,
-                                 step.held_out_nmse_after, step.block_t);
+                                 effect::name_of(step.chosen.effect), step.restated_before,
+                                 step.restated_after, step.block_t);
   for (std::size_t i = 0; i < step.parameter_count; ++i)
     text += fmt::format("    {:<32} {}\n", step.parameter[i].name,
                         quantity(step.parameter[i].estimate, step.parameter[i].unit));
   for (std::size_t i = 0; i < step.runner_up_count; ++i)
     text += fmt::format("    {:<32} {} {:.4g}\n", i == 0 ? "next best" : "",
-                        effect::name_of(step.runner_up[i].effect), step.runner_up[i].held_out_nmse);
+                        effect::name_of(step.runner_up[i].effect),
+                        error_beside(step, step.runner_up[i]));
   return text;
 }
 

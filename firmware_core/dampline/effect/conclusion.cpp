@@ -31,6 +31,11 @@ double base_error(const Explanation& e) noexcept {
   return restated ? e.base_restated_nmse : e.base.held_out_nmse;
 }
 
+double error_beside(const Step& step, const RunnerUp& runner_up) noexcept {
+  return step.restated_before > 0.0 ? (1.0 - runner_up.gain) * step.restated_before
+                                    : runner_up.held_out_nmse;
+}
+
 double floor_ratio(const Explanation& e) noexcept {
   if (!(e.floor_nmse > 0.0)) return 0.0;
   double left = e.final.held_out_nmse;

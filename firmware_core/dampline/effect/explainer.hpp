@@ -76,8 +76,8 @@ class Explainer {
   };
   using BestOfEffects = std::array<Best, kEffects>;
 
-  /// Errors of base, steps and runners-up once more in the weights of the final model: those that
-  /// effects were chosen by do not compare from one step to the next.
+  /// Errors of base and steps once more in the weights of the final model: those that effects were
+  /// chosen by do not compare from one step to the next.
   void restate(Explanation& explanation) noexcept;
   void try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept;
   /// Fits a model, weighs the scales by what it leaves, and gives late and wrongly scaled channels

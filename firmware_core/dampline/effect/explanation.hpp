@@ -43,7 +43,9 @@ struct Step {
   double line_offset{0.0};  ///< of a mode between its line of the grid and the next
   double held_out_nmse_before{0.0};
   double held_out_nmse_after{0.0};
-  double gain{0.0};           ///< 1 - after / before, in the weights of the model before
+  double gain{0.0};             ///< 1 - after / before, in the weights of the model before
+  double restated_before{0.0};  ///< held-out errors in the weights of the final model
+  double restated_after{0.0};
   double block_t{0.0};        ///< mean over deviation of the mean of the entries' improvements
   double coefficient_t{0.0};  ///< its first coefficient over the deviation
   std::size_t runner_up_count{0};
@@ -77,6 +79,8 @@ struct Explanation {
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
 };
 
+/// Held-out error that a runner-up would have left, beside a step's restated ones.
+[[nodiscard]] double error_beside(const Step& step, const RunnerUp& runner_up) noexcept;
 /// Held-out error of the base in the weights of the final model, which the steps and the final
 /// error are in.
 [[nodiscard]] double base_error(const Explanation& explanation) noexcept;
