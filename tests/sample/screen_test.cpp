@@ -184,7 +184,7 @@ TEST(SampleScreen, SeesNoFlatTopInPeaksThatAreWhole) {
   EXPECT_TRUE(with(screened({.find_flat_tops = true}, clipped(1e9)), Verdict::kSaturated).empty());
 }
 
-/// Slow beside the rate and coarse beside its step: tops of several equal values, which nothing cut.
+/// Slow beside the rate, with a coarse step: tops of several equal values, which nothing cut.
 TEST(SampleScreen, SeesNoFlatTopInARoundOne) {
   auto samples = moving(3000);
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -56,8 +56,10 @@ TEST(ManPage, HasAllFlagsAndNoOther) {
 
 TEST(ManPage, IsRightInTheEyesOfMandoc) {
   if (!has_program("mandoc")) GTEST_SKIP() << "mandoc is not installed";
-  // The standard error tells of mandoc's own database, which a bare system has not filled.
-  const Ended lint = shell("mandoc -T lint -W style '" + kPage + "' 2>/dev/null");
+  // The standard error tells of mandoc's own database, which a bare system has not filled. Which
+  // other manuals there are is the system's matter, too.
+  const Ended lint = shell("mandoc -T lint -W style '" + kPage +
+                           "' 2>/dev/null | grep -v 'referenced manual not found'");
   EXPECT_EQ(lint.output, "");
 }
 
