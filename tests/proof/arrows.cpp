@@ -22,7 +22,6 @@ struct Room {
 
 const std::vector<Room>& rooms() {
   static const std::vector<Room> kRooms{
-      {"firmware_core/generate/", {"generate/"}, true},  // a tool of the build, not of the core
       {"firmware_core/", {"dampline/", "Eigen/"}, false},
       {"hal/", {"dampline/", "hal/"}, true},
       {"drivers/", {"dampline/", "hal/", "drivers/"}, true},

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dampline/wavelet/daubechies.hpp"
-#include "generate/connection_header.hpp"
-#include "generate/exact_connection.hpp"
+#include "tests/wavelet/generate/connection_header.hpp"
+#include "tests/wavelet/generate/exact_connection.hpp"
 
 namespace dampline {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "generate/product.hpp"
+#include "tests/wavelet/generate/product.hpp"
 #include "tests/wavelet/prescribed_motion.hpp"
 
 namespace dampline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "generate/exact_connection.hpp"
+#include "tests/wavelet/generate/exact_connection.hpp"
 
 #include <algorithm>
 #include <cstddef>

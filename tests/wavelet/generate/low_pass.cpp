@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "generate/low_pass.hpp"
+#include "tests/wavelet/generate/low_pass.hpp"
 
 #include <cstddef>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "generate/decimal.hpp"
+#include "tests/wavelet/generate/decimal.hpp"
 
 #include <cstddef>
 #include <sstream>

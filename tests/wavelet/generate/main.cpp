@@ -4,8 +4,8 @@
 #include <iostream>
 #include <string>
 
-#include "generate/connection_header.hpp"
-#include "generate/product.hpp"
+#include "tests/wavelet/generate/connection_header.hpp"
+#include "tests/wavelet/generate/product.hpp"
 
 namespace {
 
