@@ -52,7 +52,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
   pass.feed->describe(out.identified);
   const auto explainer = std::make_unique<effect::Explainer>();
-  for (auto needless = effect::Effect::kUnknown;;) {
+  while (true) {
     if (!judge_sums(config, *pass.diagnosis, *explainer, out))
       throw RunError{
           fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
@@ -60,7 +60,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out);
-    needless = needless_effect(out.explanation);
+    const effect::Effect needless = needless_effect(out.explanation);
     if (needless == effect::Effect::kUnknown) break;
     out.needless[static_cast<std::size_t>(needless)] = true;
   }

@@ -64,10 +64,12 @@ std::vector<JudgedCandidate> rejected_of(const Explanation& e) {
   return out;
 }
 
+Json known(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
+
 /// "like X, law incomplete", where more is left than a complete law would leave.
-Json note_of(const Explanation& e, const Step& step) {
-  if (floor_ratio(e) <= effect::kIncompleteAbove) return nullptr;
-  return fmt::format("like {}, law incomplete", effect::name_of(step.chosen.effect));
+Json note_of(const char* effect, double over_floor) {
+  if (over_floor <= effect::kIncompleteAbove) return nullptr;
+  return fmt::format("like {}, law incomplete", effect);
 }
 
 Json step_json(const Explanation& e, std::size_t i) {
@@ -81,8 +83,8 @@ Json step_json(const Explanation& e, std::size_t i) {
           {"evidence",
            {{"gain", 1.0 - step.restated_after / step.restated_before},
             {"block_t", step.block_t},
-            {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
-          {"note", note_of(e, step)},
+            {"left_over_floor", known(ratio)}}},
+          {"note", note_of(effect::name_of(step.chosen.effect), ratio)},
           {"runners_up", judged_json(runners_up_of(step))}};
 }
 
@@ -130,9 +132,8 @@ Json drift_step(const Explained& explained) {
           {"evidence",
            {{"gain", drift.gain},
             {"kind", drift.step ? "step" : "drift"},
-            {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)}}},
-          {"note", ratio > effect::kIncompleteAbove ? Json("like time_drift, law incomplete")
-                                                    : Json(nullptr)},
+            {"left_over_floor", known(ratio)}}},
+          {"note", note_of("time_drift", ratio)},
           {"runners_up", Json::array()}};
 }
 
@@ -174,14 +175,13 @@ std::string to_json(const Explained& explained) {
   const bool unknown = !explained.withheld && !drifts && is_unknown(e);
   if (unknown && e.step_count == 0)
     steps.push_back(unknown_step(terms_of(e, 0), e.base.held_out_nmse, explained.signature));
-  const double ratio = left_over_floor(explained);
   const Json json{{"verdict", effect::name_of(conclusion_of(explained))},
                   {"base", model(e, false)},
                   {"steps", steps},
                   {"final", drifts ? drifting_model(explained) : model(e, true)},
                   {"rejected", judged_json(rejected_of(e))},
-                  {"floor_nmse", e.floor_nmse > 0.0 ? Json(e.floor_nmse) : Json(nullptr)},
-                  {"left_over_floor", ratio > 0.0 ? Json(ratio) : Json(nullptr)},
+                  {"floor_nmse", known(e.floor_nmse)},
+                  {"left_over_floor", known(left_over_floor(explained))},
                   {"validation", validation},
                   {"faults", faults_of(explained.identified.faults)},
                   {"force", "moving mass times the frame's deceleration, over 1 Hz"},

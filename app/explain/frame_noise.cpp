@@ -17,7 +17,7 @@ constexpr double kLeast = 1e-3;  // of the largest power, so that no weight is w
 
 double squared_response(const AntiAliasConfig& filter, double f_hz) {
   if (filter.corner_hz <= 0.0) return 1.0;
-  return 1.0 / (1.0 + std::pow(f_hz / filter.corner_hz, 2.0 * filter.order));
+  return 1.0 / butterworth_loss(f_hz / filter.corner_hz, filter.order);
 }
 
 }  // namespace

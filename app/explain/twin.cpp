@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/explain/blackman.hpp"
+#include "dampline/motion/anti_alias.hpp"
 
 namespace dampline::app {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
 constexpr double kRamp = 0.05;         // of a gap: where the force rises
 constexpr double kMostGivenBack = 2.0;
-constexpr int kBins = 512;
+constexpr std::size_t kBins = 512;
 constexpr double kSteepest = 0.8;  // slope times step that Runge-Kutta is trusted with
 
 sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config, int fine) {
@@ -23,7 +24,7 @@ sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config, int fine)
 /// What the sensors' filter took of a motion, to be given back: the twin is seen through it again.
 double given_back(const TwinConfig& config, double f_hz) {
   if (config.anti_alias_hz <= 0.0) return 1.0;
-  return std::min(std::sqrt(1.0 + std::pow(f_hz / config.anti_alias_hz, 8.0)), kMostGivenBack);
+  return std::min(std::sqrt(butterworth_loss(f_hz / config.anti_alias_hz, 4)), kMostGivenBack);
 }
 
 bool is_number(const Sample& sample) {
@@ -50,6 +51,13 @@ Twin::Twin(const TwinConfig& config)
 }
 
 void Twin::set_taps() {
+  std::array<double, kBins> turn{};  // of a sample, at each frequency
+  std::array<double, kBins> gain{};
+  for (std::size_t k = 0; k < kBins; ++k) {
+    const double f = 0.5 * (static_cast<double>(k) + 0.5) / kBins;
+    turn[k] = 2.0 * std::numbers::pi * f;
+    gain[k] = given_back(config_, f * config_.sample_rate_hz);
+  }
   for (int part = 0; part <= kFine; ++part) {
     auto& taps = taps_[static_cast<std::size_t>(part)];
     const double place = kHalf - 1 + static_cast<double>(part) / kFine;
@@ -57,11 +65,7 @@ void Twin::set_taps() {
     for (std::size_t i = 0; i < kTaps; ++i) {
       const double x = static_cast<double>(i) - place;
       double tap = 0.0;
-      for (int k = 0; k < kBins; ++k) {
-        const double f = 0.5 * (k + 0.5) / kBins;
-        tap += given_back(config_, f * config_.sample_rate_hz) *
-               std::cos(2.0 * std::numbers::pi * f * x);
-      }
+      for (std::size_t k = 0; k < kBins; ++k) tap += gain[k] * std::cos(turn[k] * x);
       taps[i] = tap * blackman(x / kHalf);
       sum += taps[i];
     }

@@ -18,7 +18,7 @@ constexpr double kHighestLifted = 0.4;  // cycles per sample
 /// Part of a Butterworth filter's loss, and a raised cosine down to zero above the edge, so
 /// that noise is not amplified.
 double lift(double relative, int order, double beyond) noexcept {
-  const double loss = std::sqrt(1.0 + std::pow(relative, 2 * order));
+  const double loss = std::sqrt(butterworth_loss(relative, order));
   return std::pow(loss, VelocityLift::kShareOfLoss) * (0.5 + 0.5 * std::cos(kPi * beyond));
 }
 

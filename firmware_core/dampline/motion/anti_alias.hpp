@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace dampline {
@@ -10,6 +11,11 @@ struct AntiAliasConfig {
   double corner_hz{100.0};  ///< -3 dB; 0: none, or unknown
   int order{4};             ///< 1...8
 };
+
+/// What a Butterworth low pass divides a power by, at `relative` times its corner.
+[[nodiscard]] inline double butterworth_loss(double relative, int order) noexcept {
+  return 1.0 + std::pow(relative, 2 * order);
+}
 
 /// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter
 /// has lowered, by 22 % of the loss in decibels, up to the corner.

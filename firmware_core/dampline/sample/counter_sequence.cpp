@@ -9,6 +9,7 @@ namespace dampline {
 namespace {
 constexpr int kConfirmingFrames = 4;
 constexpr double kPeriodRange = 0.5;
+constexpr double kCertain = 0.49;  // of a wrap: a next counter cannot be another wrap's
 }  // namespace
 
 CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
@@ -16,7 +17,7 @@ CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
       mask_{counter_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << counter_bits) - 1},
       wrap_{std::ldexp(1.0, static_cast<int>(counter_bits))},
       tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)},
-      usual_{std::min(0.49 * wrap_, kBurstTicks)} {}
+      usual_{std::min(kCertain * wrap_, kBurstTicks)} {}
 
 void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
                             std::int64_t time_ns) noexcept {
@@ -28,7 +29,7 @@ void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
 std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
   const std::uint64_t ahead = (counter - newest_counter_) & mask_;
   const double due_ahead = due_tick - static_cast<double>(newest());
-  if (ahead == 1 && std::abs(due_ahead - 1.0) < 0.49 * wrap_) return newest() + 1;
+  if (ahead == 1 && std::abs(due_ahead - 1.0) < kCertain * wrap_) return newest() + 1;
   const double wraps = std::nearbyint((due_ahead - static_cast<double>(ahead)) / wrap_);
   // Modulo 2^64 on purpose: a counter of 64 bits that goes back one wraps to a step of -1.
   const std::uint64_t step =
