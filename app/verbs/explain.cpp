@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "app/diagnosis/rig/explain_rig.hpp"
 #include "app/error.hpp"
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/explanation_json.hpp"
-#include "app/explain/rig/explain_rig.hpp"
 #include "app/identify/recognised_columns.hpp"
 #include "app/identify/record_rate.hpp"
 #include "app/report/stage_report.hpp"

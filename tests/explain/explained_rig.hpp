@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/explain/rig/explain_rig.hpp"
+#include "app/diagnosis/rig/explain_rig.hpp"
 #include "app/identify/recognised_columns.hpp"
 #include "tests/drivers/temporary_file.hpp"
 

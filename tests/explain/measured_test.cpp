@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/explain/rig/explain_rig.hpp"
+#include "app/diagnosis/rig/explain_rig.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::app {

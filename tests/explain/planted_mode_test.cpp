@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "app/explain/rig/rig_mode.hpp"
+#include "app/diagnosis/rig/rig_mode.hpp"
 #include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
