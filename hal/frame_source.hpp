@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "dampline/can_frame.hpp"
 #include "dampline/result.hpp"
-#include "dampline/sample/can_frame.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::hal {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::hal {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 #include "sim_hw/random.hpp"
 #include "sim_hw/section_chain.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 #include "sim_hw/butterworth.hpp"
 #include "sim_hw/effects/impulses.hpp"
 #include "sim_hw/sensors.hpp"

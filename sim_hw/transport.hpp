@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "sim_hw/random.hpp"
 #include "sim_hw/simulation.hpp"
 

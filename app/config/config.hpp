@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/config/column.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 

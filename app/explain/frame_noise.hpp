@@ -6,7 +6,7 @@
 
 #include "dampline/guard/fourier.hpp"
 #include "dampline/motion/anti_alias.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 

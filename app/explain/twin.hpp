@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 #include "sim_hw/butterworth.hpp"
 #include "sim_hw/random.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 

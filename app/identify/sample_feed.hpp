@@ -9,8 +9,8 @@
 #include "app/config/config.hpp"
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
+#include "dampline/sample.hpp"
 #include "dampline/sample/rate_meter.hpp"
-#include "dampline/sample/sample.hpp"
 #include "dampline/sample/screen.hpp"
 
 namespace dampline::app {

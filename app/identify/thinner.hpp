@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 

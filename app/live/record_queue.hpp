@@ -7,7 +7,7 @@
 
 #include "app/live/spsc_ring.hpp"
 #include "app/live/wake_call.hpp"
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::app {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::drivers {

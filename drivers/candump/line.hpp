@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 
 namespace dampline::drivers {
 

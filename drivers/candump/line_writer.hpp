@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 
 namespace dampline::drivers {
 

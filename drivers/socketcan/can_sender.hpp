@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "drivers/outcome.hpp"
 #include "drivers/socketcan/can_socket.hpp"
 #include "hal/clock.hpp"

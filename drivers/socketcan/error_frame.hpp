@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::drivers {

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 #include "drivers/socketcan/clock_steps.hpp"
 #include "hal/clock.hpp"
 

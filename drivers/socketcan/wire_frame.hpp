@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 
 namespace dampline::drivers {
 

@@ -14,7 +14,7 @@
 #include "dampline/motion/fir.hpp"
 #include "dampline/motion/noise_meter.hpp"
 #include "dampline/result.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 #include "dampline/sample/screen.hpp"
 #include "dampline/snapshot.hpp"
 #include "dampline/wavelet/law_average.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/can_frame.hpp"
 
 namespace dampline::bus {
 

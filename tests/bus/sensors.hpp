@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "dampline/sample/can_frame.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/can_frame.hpp"
+#include "dampline/sample.hpp"
 #include "tests/bus/bus.hpp"
 
 namespace dampline::bus {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::proof {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "dampline/motion/drift_free_integral.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::effect {
 

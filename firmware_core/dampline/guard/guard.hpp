@@ -17,7 +17,7 @@
 #include "dampline/guard/step_meter.hpp"
 #include "dampline/guard/wheelset_watch.hpp"
 #include "dampline/result.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "dampline/motion/anti_alias.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

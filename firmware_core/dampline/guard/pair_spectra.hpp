@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "dampline/guard/fourier.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

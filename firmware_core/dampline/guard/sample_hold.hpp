@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "dampline/guard/guard.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/can_frame.hpp"
 #include "dampline/result.hpp"
-#include "dampline/sample/can_frame.hpp"
+#include "dampline/sample.hpp"
 #include "dampline/sample/channel_lane.hpp"
 #include "dampline/sample/rate_meter.hpp"
-#include "dampline/sample/sample.hpp"
 
 namespace dampline {
 

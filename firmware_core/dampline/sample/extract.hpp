@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "dampline/can_frame.hpp"
 #include "dampline/result.hpp"
-#include "dampline/sample/can_frame.hpp"
 #include "dampline/sample/signal.hpp"
 
 namespace dampline {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "dampline/result.hpp"
-#include "dampline/sample/sample.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 

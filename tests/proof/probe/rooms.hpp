@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "dampline/can_frame.hpp"
 #include "dampline/identifier.hpp"
-#include "dampline/sample/can_frame.hpp"
 
 namespace dampline::proof {
 

@@ -8,7 +8,10 @@ namespace dampline {
 /// Who stamped a frame's time.
 enum class TimeSource : std::uint8_t { kUnknown, kSoftware, kHardware };
 
-/// One CAN or CAN FD frame as a source delivers it.
+/// One CAN or CAN FD frame as a source delivers it: what the identifier is fed with where a bus, or
+/// a log of one, is the source. Plain data of 88 bytes; nothing is checked here. What no channel
+/// wants (another identifier, remote and error frames, too few bytes) is counted and ignored by who
+/// decodes.
 struct CanFrame {
   std::int64_t time_ns{0};          ///< when it was received, by the source's clock
   std::uint32_t id{0};              ///< 11 or 29 bits, no flag bits; of an error frame its classes
