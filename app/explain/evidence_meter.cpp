@@ -8,8 +8,8 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kReach = 3.0;  // of the rms
-constexpr std::size_t kBins = 31;
+constexpr double kBinReach = 3.0;  // of the rms
+constexpr std::size_t kPlaces = 31;
 constexpr std::size_t kTimeBins = 60;
 constexpr std::size_t kExcerpt = 2000;    // rows
 constexpr double kExcerptS = 12.0;        // at most
@@ -31,8 +31,8 @@ std::size_t excerpt_stride(const EvidenceScale& scale) {
 
 EvidenceMeter::EvidenceMeter(const EvidenceScale& s)
     : scale_{s},
-      deflection_{"deflection_m", -kReach * s.deflection_m, kReach * s.deflection_m, kBins},
-      velocity_{"velocity_mps", -kReach * s.velocity_mps, kReach * s.velocity_mps, kBins},
+      deflection_{"deflection_m", -kBinReach * s.deflection_m, kBinReach * s.deflection_m, kPlaces},
+      velocity_{"velocity_mps", -kBinReach * s.velocity_mps, kBinReach * s.velocity_mps, kPlaces},
       time_{"time_s", 0.0, s.duration_s, kTimeBins},
       spectrum_{s.rate_hz},
       maps_{s.deflection_m, s.velocity_mps, s.noise_m,

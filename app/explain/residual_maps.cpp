@@ -7,13 +7,13 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kReach = 2.5;         // of the motion's size: cells beyond take what lies outside
+constexpr double kMapReach = 2.5;      // of the motion's size: cells beyond take what lies outside
 constexpr double kFirstTravel = 0.05;  // of the size; each further cell half as long again
 constexpr double kTravelRatio = 1.5;
 constexpr std::size_t kMostWaiting = 2000;
 
 std::size_t cell_of(double x, std::size_t side) {
-  const double u = 0.5 * (std::clamp(x / kReach, -1.0, 1.0) + 1.0) * static_cast<double>(side);
+  const double u = 0.5 * (std::clamp(x / kMapReach, -1.0, 1.0) + 1.0) * static_cast<double>(side);
   return std::min(static_cast<std::size_t>(u), side - 1);
 }
 

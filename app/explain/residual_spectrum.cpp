@@ -8,7 +8,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::uint64_t kFewestSegments = 4;
+constexpr std::uint64_t kFewestCoherent = 4;
 constexpr double kBandRatio = 1.2599210498948732;  // a third of an octave
 constexpr double kEdge = 0.1;                      // of the energy on either side of the band
 
@@ -58,7 +58,7 @@ void ResidualSpectrum::transform() {
 
 std::vector<ResidualRow> ResidualSpectrum::rows() const {
   std::vector<ResidualRow> out;
-  if (segments_ < kFewestSegments) return out;
+  if (segments_ < kFewestCoherent) return out;
   const auto scale = 2.0 / (static_cast<double>(kSize) * static_cast<double>(segments_));
   for (double low = 0.5 * bin_hz(); low < 0.5 * rate_hz_;) {
     const double high = std::max(low * kBandRatio, low + bin_hz());
@@ -81,7 +81,7 @@ std::vector<ResidualRow> ResidualSpectrum::rows() const {
 }
 
 void ResidualSpectrum::describe(Signature& out) const {
-  if (segments_ < kFewestSegments) return;
+  if (segments_ < kFewestCoherent) return;
   double all = 0.0;
   for (const double p : power_[1]) all += p;
   if (!(all > 0.0)) return;

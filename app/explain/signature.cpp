@@ -6,16 +6,14 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kMostly = 0.8;
-
 std::string kind_of(const Signature& s) {
   if (s.has_memory())
     return fmt::format("depends on the travel since the reversal ({:.0f} % of it)",
                        100.0 * s.travel_share);
   if (!s.memoryless()) return "no function of deflection and velocity, nor of the last reversal";
-  const char* symmetry = s.odd_share > kMostly         ? "odd"
-                         : s.odd_share < 1.0 - kMostly ? "even"
-                                                       : "neither odd nor even";
+  const char* symmetry = s.odd_share > Signature::kMostly         ? "odd"
+                         : s.odd_share < 1.0 - Signature::kMostly ? "even"
+                                                                  : "neither odd nor even";
   return fmt::format("a function of deflection and velocity, {} ({:.0f} % of it)", symmetry,
                      100.0 * s.surface_share);
 }

@@ -30,6 +30,7 @@ struct Signature {
     return travel_share > kClear && travel_share > surface_share;
   }
   static constexpr double kClear = 0.2;
+  static constexpr double kMostly = 0.8;
 };
 
 /// "memoryless, odd; 3 to 11 Hz" and the like.

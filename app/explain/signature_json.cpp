@@ -7,9 +7,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* symmetry_of(const Signature& s) {
-  constexpr double kMostly = 0.8;
-  if (s.odd_share > kMostly) return "odd";
-  return s.odd_share < 1.0 - kMostly ? "even" : "mixed";
+  if (s.odd_share > Signature::kMostly) return "odd";
+  return s.odd_share < 1.0 - Signature::kMostly ? "even" : "mixed";
 }
 
 }  // namespace

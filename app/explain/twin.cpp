@@ -14,7 +14,7 @@ namespace {
 constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
 constexpr double kRamp = 0.05;         // of a gap: where the force rises
 constexpr double kMostGivenBack = 2.0;
-constexpr std::size_t kBins = 512;
+constexpr std::size_t kDesignBins = 512;
 constexpr double kSteepest = 0.8;  // slope times step that Runge-Kutta is trusted with
 
 sim::ButterworthLowPass<kChannels> filter_of(const TwinConfig& config, int fine) {
@@ -51,10 +51,10 @@ Twin::Twin(const TwinConfig& config)
 }
 
 void Twin::set_taps() {
-  std::array<double, kBins> turn{};  // of a sample, at each frequency
-  std::array<double, kBins> gain{};
-  for (std::size_t k = 0; k < kBins; ++k) {
-    const double f = 0.5 * (static_cast<double>(k) + 0.5) / kBins;
+  std::array<double, kDesignBins> turn{};  // of a sample, at each frequency
+  std::array<double, kDesignBins> gain{};
+  for (std::size_t k = 0; k < kDesignBins; ++k) {
+    const double f = 0.5 * (static_cast<double>(k) + 0.5) / kDesignBins;
     turn[k] = 2.0 * std::numbers::pi * f;
     gain[k] = given_back(config_, f * config_.sample_rate_hz);
   }
@@ -65,7 +65,7 @@ void Twin::set_taps() {
     for (std::size_t i = 0; i < kTaps; ++i) {
       const double x = static_cast<double>(i) - place;
       double tap = 0.0;
-      for (std::size_t k = 0; k < kBins; ++k) tap += gain[k] * std::cos(turn[k] * x);
+      for (std::size_t k = 0; k < kDesignBins; ++k) tap += gain[k] * std::cos(turn[k] * x);
       taps[i] = tap * blackman(x / kHalf);
       sum += taps[i];
     }

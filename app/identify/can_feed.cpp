@@ -14,7 +14,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::size_t kBatch = 256;
+constexpr std::size_t kFrameBatch = 256;
 constexpr std::chrono::milliseconds kPatience{100};
 
 /// `Source` is a hal::FrameSource that explains its errors.
@@ -73,7 +73,7 @@ class CanFeed final : public SampleFeed {
   std::unique_ptr<Source> source_;
   std::array<ChannelConfig, kChannels> wanted_;
   std::unique_ptr<SampleAssembler> assembler_;
-  std::array<CanFrame, kBatch> frames_{};
+  std::array<CanFrame, kFrameBatch> frames_{};
   EventList events_;
   std::optional<std::int64_t> first_time_ns_;
 };

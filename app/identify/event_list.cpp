@@ -8,7 +8,7 @@ namespace dampline::app {
 namespace {
 
 /// By the number of the kind; the black box's format fixes the numbers.
-constexpr std::array<std::string_view, 24> kNames{
+constexpr std::array<std::string_view, 24> kEventNames{
     "unknown",           "run_start",         "run_end",         "link_down",     "link_up",
     "interface_removed", "interface_back",    "bus_off",         "bus_restarted", "bus_error",
     "frames_dropped",    "clock_step",        "signal_lost",     "signal_back",   "records_lost",
@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 24> kNames{
 
 std::string_view name_of(hal::EventKind kind) noexcept {
   const auto number = static_cast<std::size_t>(kind);
-  return number < kNames.size() ? kNames[number] : kNames[0];
+  return number < kEventNames.size() ? kEventNames[number] : kEventNames[0];
 }
 
 void EventList::describe(std::int64_t first_time_ns, RunResult& result) const {

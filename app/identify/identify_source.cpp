@@ -16,7 +16,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::size_t kBatch = 4096;
+constexpr std::size_t kSampleBatch = 4096;
 
 std::string state_text(const TruckRun& run) {
   const ConvergenceHistory::Row* row = run.newest();
@@ -63,7 +63,7 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
   const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
   Progress progress{show_progress};
   std::vector<Sample> samples;
-  samples.reserve(kBatch);
+  samples.reserve(kSampleBatch);
   for (bool more = true; more;) {
     samples.clear();
     more = feed.read(samples);

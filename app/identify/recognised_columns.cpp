@@ -31,7 +31,7 @@ constexpr std::array kWanted{Wanted{Column::kTime, Quantity::kTime, true},
                              Wanted{Column::kForce, Quantity::kForce, true},
                              Wanted{Column::kVelocity, Quantity::kVelocity, false},
                              Wanted{Column::kAccel, Quantity::kAccel, false}};
-constexpr std::array kTruckColumns{Column::kFrameAccel, Column::kWheelset1Accel,
+constexpr std::array kAccelColumns{Column::kFrameAccel, Column::kWheelset1Accel,
                                    Column::kWheelset2Accel};
 constexpr std::size_t kFewestRows = 5;
 constexpr double kLongestS = 0.1;  // between rows, where the unit of time is a guess
@@ -96,7 +96,7 @@ class Recogniser {
       : out_{given, {}}, path_{std::move(path)}, head_{std::move(head)} {}
 
   RecognisedColumns run() {
-    if (std::all_of(kTruckColumns.begin(), kTruckColumns.end(),
+    if (std::all_of(kAccelColumns.begin(), kAccelColumns.end(),
                     [&](Column c) { return is_there(out_.config.input.header(c)); }))
       return out_;
     for (const Wanted& wanted : kWanted) look_for(wanted);

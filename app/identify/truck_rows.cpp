@@ -10,16 +10,16 @@ namespace dampline::app {
 namespace {
 
 constexpr std::size_t kWidth = std::tuple_size_v<TruckRows::Row>;
-constexpr std::size_t kBatch = 512;
+constexpr std::size_t kRowBatch = 512;
 constexpr std::size_t kFirstRows = 2000;
-constexpr std::array<Column, kWidth> kTruckColumns{
-    Column::kTime, Column::kFrameAccel, Column::kWheelset1Accel, Column::kWheelset2Accel};
+constexpr std::array<Column, kWidth> kRowColumns{Column::kTime, Column::kFrameAccel,
+                                                 Column::kWheelset1Accel, Column::kWheelset2Accel};
 
 }  // namespace
 
 TruckRows::TruckRows(const InputConfig& input, const SourceOptions& source)
-    : reader_{open_csv(input, source, kTruckColumns, {})} {
-  for (std::size_t i = 0; i < kWidth; ++i) scale_[i] = input.scale[index(kTruckColumns[i])];
+    : reader_{open_csv(input, source, kRowColumns, {})} {
+  for (std::size_t i = 0; i < kWidth; ++i) scale_[i] = input.scale[index(kRowColumns[i])];
   while (first_.size() < kFirstRows && read_batch(first_)) {
   }
 }
@@ -51,7 +51,7 @@ bool TruckRows::read(std::vector<Row>& out) {
 }
 
 bool TruckRows::read_batch(std::vector<Row>& out) {
-  values_.resize(kWidth * kBatch);
+  values_.resize(kWidth * kRowBatch);
   const auto count = reader_->read(values_);
   if (!count.ok() && count.error() != Errc::kEndOfStream) throw RunError{reader_->error_text()};
   for (std::size_t row = 0; count.ok() && row < count.value(); ++row) {

@@ -8,7 +8,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{100};
+constexpr std::chrono::milliseconds kFramePatience{100};
 
 }  // namespace
 
@@ -61,8 +61,8 @@ void Acquisition::rest() noexcept {
   const std::int64_t start_ns = clock_.monotonic_ns();
   if (read_interval_ns_ > 0) {
     clock_.sleep_until(start_ns + read_interval_ns_);
-  } else if (!source_.wait(kPatience).ok()) {  // what cannot even wait must not spin
-    clock_.sleep_until(start_ns + std::chrono::nanoseconds{kPatience}.count());
+  } else if (!source_.wait(kFramePatience).ok()) {  // what cannot even wait must not spin
+    clock_.sleep_until(start_ns + std::chrono::nanoseconds{kFramePatience}.count());
   }
 }
 

@@ -50,7 +50,7 @@ class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds 
 
   /// Until stop() or the end of the source; what the source still holds then is taken.
   void run() noexcept;
-  /// One batch of frames, or a wait of at most kPatience. False at the end of the source.
+  /// One batch of frames, or a wait of at most kFramePatience. False at the end of the source.
   bool step() noexcept;
   /// Any thread.
   void stop() noexcept { stop_.store(true, std::memory_order_release); }

@@ -15,7 +15,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{200};
+constexpr std::chrono::milliseconds kEdgePatience{200};
 constexpr std::string_view kEdgeForm = "pulse:LINE, marker:LINE or wheel:LINE, with :active_low";
 constexpr std::string_view kLampForm = "LINE or LINE:active_low";
 
@@ -136,7 +136,7 @@ void DigitalLines::describe(RunResult& result) const {
 void DigitalLines::watch(Recorder& recorder) {
   std::array<hal::Edge, 64> edges;
   while (!stop_.load(std::memory_order_acquire)) {
-    const auto ready = edges_->wait(kPatience);
+    const auto ready = edges_->wait(kEdgePatience);
     if (!ready.ok()) return gone();
     if (!ready.value()) continue;
     const auto count = edges_->read(edges);

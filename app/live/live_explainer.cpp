@@ -14,7 +14,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{50};
+constexpr std::chrono::milliseconds kSamplePatience{50};
 constexpr int kNice = 10;  // the acquisition and the writer come first
 
 }  // namespace
@@ -63,7 +63,7 @@ void LiveExplainer::run() {
       judge();
       turn_.store(Turn::kWait, std::memory_order_release);
     }
-    std::this_thread::sleep_for(kPatience);
+    std::this_thread::sleep_for(kSamplePatience);
   }
 }
 

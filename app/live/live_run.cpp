@@ -14,7 +14,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kTurn{60};  // often enough for the lamp's patterns
+constexpr std::chrono::milliseconds kLampTurn{60};  // often enough for the lamp's patterns
 
 AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const LiveOptions& options) {
   AcquisitionConfig config;
@@ -76,7 +76,7 @@ void LiveRun::note(hal::EventKind kind, std::int64_t value) {
 void LiveRun::watch(const Signals& signals) {
   const std::int64_t end_ns = start_ns_ + std::llround(1e9 * options_.duration_s);
   while (!acquisition_->ended()) {
-    const SignalSeen seen = signals.wait(kTurn);
+    const SignalSeen seen = signals.wait(kLampTurn);
     if (seen == SignalSeen::kStop) return;
     if (seen == SignalSeen::kRotate) rotate();
     const std::int64_t now_ns = parts_.clock->monotonic_ns();

@@ -7,7 +7,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::chrono::milliseconds kTurn{100};
+constexpr std::chrono::milliseconds kWriteTurn{100};
 
 }  // namespace
 
@@ -34,7 +34,7 @@ hal::RecordHealth Recorder::health() const {
 void Recorder::loop() noexcept {
   while (!stop_.load(std::memory_order_acquire)) {
     turn();
-    items_.wait(kTurn);
+    items_.wait(kWriteTurn);
   }
   turn();
   sink_.close();

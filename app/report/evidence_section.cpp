@@ -39,7 +39,7 @@ std::string joined(const Json& words) {
   return out;
 }
 
-std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+std::string percent_of(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
 std::vector<std::string> model_row(const char* name, const Json& model) {
   return {name, fmt::format("{:.4g}", number_at(model, "held_out_nmse")),
@@ -60,7 +60,7 @@ std::string parameters_of(const Json& step) {
 std::vector<std::string> candidate_row(int round, const Json& c, const std::string& verdict) {
   return {word_at(c, "effect"),
           fmt::format("{}", round),
-          percent(number_at(c, "gain")),
+          percent_of(number_at(c, "gain")),
           fmt::format("{:.1f}", number_at(c, "block_t")),
           fmt::format("{:.4g}", number_at(c, "held_out_nmse")),
           verdict};

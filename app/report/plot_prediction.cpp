@@ -12,7 +12,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::size_t kMaxPlotted = 3000;
+constexpr std::size_t kMaxPredicted = 3000;
 constexpr double kShownS = 20.0;  // more is not seen
 
 /// The liveliest stretch of a record.
@@ -56,7 +56,7 @@ PlotScript plot_prediction(const Evidence& evidence, std::uint32_t record) {
     reference = reference || std::isfinite(r.reference_n);
   }
   const PlotUnit unit = plot_unit("N", largest);
-  const std::size_t stride = (rows.size() + kMaxPlotted - 1) / kMaxPlotted;
+  const std::size_t stride = (rows.size() + kMaxPredicted - 1) / kMaxPredicted;
   std::string script = fmt::format(
       "{}set key at graph 1,graph 1.02 right bottom horizontal maxrows 1 samplen 2 noopaque\n"
       "set tmargin 2\nset datafile missing '?'\n$record << EOD\n",

@@ -27,7 +27,7 @@
 namespace dampline::app {
 namespace {
 
-struct Options {
+struct ExplainFlags {
   std::vector<std::string> records;
   std::vector<std::string> validation;
   std::string reference;
@@ -40,7 +40,7 @@ struct Options {
   bool no_report{false};
 };
 
-std::filesystem::path place_of(const Options& options) {
+std::filesystem::path place_of(const ExplainFlags& options) {
   if (!options.out.empty()) return options.out;
   const std::string& path = options.records.front();
   const std::string stem = path == "-" ? "stdin" : std::filesystem::path{path}.stem().string();
@@ -54,7 +54,8 @@ struct Findings {
   RunFiles files;
 };
 
-Findings explain_truck_record(const Config& config, const Options& options, bool show_progress) {
+Findings explain_truck_record(const Config& config, const ExplainFlags& options,
+                              bool show_progress) {
   if (options.records.size() > 1)
     throw UsageError{
         fmt::format("RECORD: found {} records, expected one of a truck; others go with --validate",
@@ -67,7 +68,7 @@ Findings explain_truck_record(const Config& config, const Options& options, bool
           {found.identified, write_run_toml(config, found.inputs), found.state}};
 }
 
-Findings explain_rig_records(const Config& config, const Options& options,
+Findings explain_rig_records(const Config& config, const ExplainFlags& options,
                              const std::vector<std::string>& notes) {
   RigExplanation found = explain_rig(
       config, {options.records, options.validation, options.reference, options.skip_bad_lines});
@@ -83,7 +84,7 @@ Findings explain_rig_records(const Config& config, const Options& options,
   return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};
 }
 
-int explain(const Options& options) {
+int explain(const ExplainFlags& options) {
   const std::filesystem::path place = place_of(options);
   RunDirectory directory{place, options.force};
   const SourceOptions first{options.records.front(), options.skip_bad_lines};
@@ -113,7 +114,7 @@ int explain(const Options& options) {
 void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   CLI::App* verb = program.add_subcommand(
       "explain", "Find out what a model lacks: the effect, its size, the error before and after");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExplainFlags>();
   verb->add_option(
           "RECORD", options->records,
           "a truck's record: FILE.log (candump), FILE.csv, or a black box; or records of a "

@@ -26,7 +26,7 @@
 namespace dampline::app {
 namespace {
 
-struct Options {
+struct IdentifyFlags {
   SourceOptions source;
   std::string config;
   std::string methods;
@@ -41,7 +41,7 @@ struct Options {
   bool any_live_flag{false};
 };
 
-std::filesystem::path place_of(const Options& options) {
+std::filesystem::path place_of(const IdentifyFlags& options) {
   if (!options.out.empty()) return options.out;
   const std::string stem = options.source.path == "-"
                                ? "stdin"
@@ -49,7 +49,7 @@ std::filesystem::path place_of(const Options& options) {
   return free_run_name(std::filesystem::current_path(), stem);
 }
 
-void print_result(const Options& options, const RunResult& result,
+void print_result(const IdentifyFlags& options, const RunResult& result,
                   const std::filesystem::path& place) {
   if (options.json) fmt::print("{}", to_json(result));
   if (options.json || options.quiet) return;
@@ -57,7 +57,7 @@ void print_result(const Options& options, const RunResult& result,
              (options.no_report ? place : place / "report.html").string());
 }
 
-void check_live_flags(const Options& options, SourceKind kind) {
+void check_live_flags(const IdentifyFlags& options, SourceKind kind) {
   if (options.any_live_flag && kind != SourceKind::kInterface)
     throw UsageError{fmt::format(
         "{}: is a record; --duration, --publish-every, --read-every, --blackbox, --no-blackbox and "
@@ -67,13 +67,14 @@ void check_live_flags(const Options& options, SourceKind kind) {
     throw UsageError{"--blackbox and --no-blackbox exclude each other"};
 }
 
-std::filesystem::path blackbox_of(const Options& options, const std::filesystem::path& place) {
+std::filesystem::path blackbox_of(const IdentifyFlags& options,
+                                  const std::filesystem::path& place) {
   if (options.no_blackbox) return {};
   return options.blackbox.empty() ? place / "blackbox" : std::filesystem::path{options.blackbox};
 }
 
 /// A record, or a live interface until it ends.
-Identified find(const Options& options, const Config& config, SourceKind kind,
+Identified find(const IdentifyFlags& options, const Config& config, SourceKind kind,
                 const std::filesystem::path& place) {
   const bool progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
   if (kind != SourceKind::kInterface)
@@ -82,13 +83,13 @@ Identified find(const Options& options, const Config& config, SourceKind kind,
                        {place, blackbox_of(options, place), progress});
 }
 
-Config config_of(const Options& options) {
+Config config_of(const IdentifyFlags& options) {
   Config config = options.config.empty() ? Config{} : load_config(options.config);
   if (!options.methods.empty()) config.estimate.methods = options.methods;
   return config;
 }
 
-int identify(const Options& options) {
+int identify(const IdentifyFlags& options) {
   const RecognisedColumns seen = recognise_columns(config_of(options), options.source);
   const SourceKind kind = detect_source(seen.config, options.source);
   const Config config = with_record_rate(seen.config, options.source, kind);
@@ -107,7 +108,7 @@ int identify(const Options& options) {
   return 0;
 }
 
-void add_live_flags(CLI::App& verb, Options& options) {
+void add_live_flags(CLI::App& verb, IdentifyFlags& options) {
   constexpr double kHundredYearsS = 3.2e9;
   LiveOptions& live = options.live;
   const std::string group = "Live (SOURCE is an interface)";
@@ -140,7 +141,7 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
       "identify",
       "Turn a recorded run, or a live CAN bus, into a damping curve with its "
       "uncertainty");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<IdentifyFlags>();
   verb->add_option("SOURCE", options->source.path,
                    "an interface (can0, vcan0), FILE.log (candump), FILE.csv, a black box, or - "
                    "for candump text on standard input")
