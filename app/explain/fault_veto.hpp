@@ -5,7 +5,7 @@
 #include "app/run/faults.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "dampline/effect/explanation.hpp"
-#include "dampline/guard/fault.hpp"
+#include "dampline/faults.hpp"
 
 namespace dampline::app {
 

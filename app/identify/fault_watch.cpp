@@ -38,7 +38,7 @@ std::vector<Span> spoilt_spans(const Guard& guard, const Fault& fault, double no
                                const TruckRecord& record) {
   const auto second = std::max<std::int64_t>(std::llround(nominal_hz), 1);
   std::vector<Span> spans;
-  const std::int64_t known = record.newest_tick - FaultBook::kSeconds * second;
+  const std::int64_t known = record.newest_tick - FaultLog::kSeconds * second;
   for (std::int64_t tick = std::max(record.first_tick, known); tick <= record.newest_tick;
        tick += second) {
     if (!guard.spoilt(fault.kind, fault.channel, tick)) continue;
@@ -88,14 +88,14 @@ FaultWatch::FaultWatch(const Config& config, const IdentifierConfig& core)
     : nominal_hz_{core.sample_rate_hz},
       wait_s_{config.guards.wait_s},
       guard_{std::make_unique<Guard>(guard_config(config, core))},
-      hold_{std::make_unique<SampleHold>(
+      delay_{std::make_unique<JudgementDelay>(
           static_cast<std::size_t>(std::llround(config.guards.wait_s * core.sample_rate_hz)))} {}
 
 FaultView FaultWatch::view() const noexcept {
   FaultView out;
   for (const Fault& fault : guard_->faults()) out.faults[out.count++] = fault;
   out.inputs = guard_->inputs();
-  out.held = hold_->counts();
+  out.held = delay_->counts();
   return out;
 }
 

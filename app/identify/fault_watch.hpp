@@ -8,17 +8,17 @@
 #include "app/identify/truck_result.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/guard/guard.hpp"
-#include "dampline/guard/sample_hold.hpp"
+#include "dampline/guard/judgement_delay.hpp"
 #include "dampline/identifier.hpp"
 
 namespace dampline::app {
 
 /// The faults at one moment, in the core's own time. Plain: it is handed between threads.
 struct FaultView {
-  std::array<Fault, FaultBook::kMost> faults{};
+  std::array<Fault, FaultLog::kMost> faults{};
   std::size_t count{0};
   GuardInputs inputs;
-  SampleHold::Counts held;
+  JudgementDelay::Counts held;
 };
 
 /// Names, sizes and times in the record's own time; no spans.
@@ -35,12 +35,12 @@ class FaultWatch {
   /// where the guards want that.
   bool take(const Sample& sample, Sample& out) noexcept {
     guard_->update(sample);
-    return hold_->push(sample, *guard_, out);
+    return delay_->push(sample, *guard_, out);
   }
   /// No more samples: the guards judge what they have.
   void close() noexcept { guard_->finish(); }
   /// After close(): what still waits, one per call.
-  [[nodiscard]] bool drain(Sample& out) noexcept { return hold_->drain(*guard_, out); }
+  [[nodiscard]] bool drain(Sample& out) noexcept { return delay_->drain(*guard_, out); }
   /// How long samples wait.
   [[nodiscard]] double wait_s() const noexcept { return wait_s_; }
   /// What is known now.
@@ -60,7 +60,7 @@ class FaultWatch {
   double nominal_hz_;
   double wait_s_;
   std::unique_ptr<Guard> guard_;
-  std::unique_ptr<SampleHold> hold_;
+  std::unique_ptr<JudgementDelay> delay_;
 };
 
 }  // namespace dampline::app

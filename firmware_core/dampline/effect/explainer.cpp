@@ -41,7 +41,7 @@ bool plausible(const Candidate& candidate, const ModelFit& fit, int term) noexce
   return true;
 }
 
-/// Impacts that no sensor measured are no column: the rows that they reach are told by their size.
+/// Impacts that no sensor measured are no column: the rows that they reach are known by their size.
 void add_impulses(const ImpulseMeter& meter, const ModelFit& now, Explanation& out) noexcept {
   if (meter.share() < kImpulseShare || meter.events() < kFewestImpulses) return;
   Step& step = out.step[out.step_count++];

@@ -27,7 +27,7 @@ struct ChangeAlarm {
 
 /// Two-sided cumulative sums (Page, Biometrika 41, 1954) of the logarithms of friction and
 /// stiffness, per unit of mass and from groups of blocks, over what they were when the watch began.
-/// Mass shows as both at once. After an alarm it learns anew, so the next change is told, too.
+/// Mass shows as both at once. After an alarm it learns anew, so the next change is reported, too.
 /// Weather moves the level of friction; the watch learns how much during its first days.
 class ChangeWatch {
  public:

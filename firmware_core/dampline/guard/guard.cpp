@@ -42,7 +42,7 @@ Guard::Guard(const GuardConfig& config) noexcept
     : config_{config},
       block_ticks_{ticks_of(kBlockS)},
       stuck_ticks_{std::max(ticks_of(kStuckS), kStuckSamples)},
-      book_{config.sample_rate_hz},
+      log_{config.sample_rate_hz},
       spikes_{SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}},
       levels_{LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}},
       spectral_{config},
@@ -74,9 +74,9 @@ void Guard::update(const Sample& sample) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     spectral_.set_change_scale(c, spikes_[c].scale() * unit(c));
   }
-  spectral_.advance(book_, inputs_);
+  spectral_.advance(log_, inputs_);
   if (!spectral_.knows_delay() || wheelsets_.differs_from(spectral_.delay_s())) wheelsets_.doubt();
-  wheelsets_.update(sample.tick, sample.accel_mps2[1], sample.accel_mps2[2], book_);
+  wheelsets_.update(sample.tick, sample.accel_mps2[1], sample.accel_mps2[2], log_);
   spectral_.set_jump(wheelsets_.jump_tick());
   take_strikes();
   any_ = true;
@@ -97,9 +97,9 @@ void Guard::take_gap(const Sample& sample) noexcept {
   const std::int64_t lost = missing - std::min(no_numbers_, missing);
   no_numbers_ = 0;
   if (lost > 0) {
-    book_.report(FaultKind::kLostSamples, FaultChannel::kAll, book_.seconds(last_.tick + 1),
-                 static_cast<double>(lost));
-    book_.spoil_by_gap(last_.tick, sample.tick);
+    log_.report(FaultKind::kLostSamples, FaultChannel::kAll, log_.seconds(last_.tick + 1),
+                static_cast<double>(lost));
+    log_.spoil_by_gap(last_.tick, sample.tick);
   }
   if (missing > kBridged) return restart();
   for (SpikeWatch& watch : spikes_) watch.restart();
@@ -113,7 +113,7 @@ void Guard::take_gap(const Sample& sample) noexcept {
       between[c] = (1.0 - u) * last_.accel_mps2[c] + u * sample.accel_mps2[c];
     }
     spectral_.push(last_.tick + i, between, true);
-    wheelsets_.update(last_.tick + i, between[1], between[2], book_);
+    wheelsets_.update(last_.tick + i, between[1], between[2], log_);
   }
   wheelsets_.strike(sample.tick);
 }
@@ -134,8 +134,8 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
   if (repeats_.update(codes)) {
     if (first_repeat_ < 0) first_repeat_ = sample.tick;
     if (repeats_.found()) {
-      book_.report(FaultKind::kRepeatedSamples, FaultChannel::kAll, book_.seconds(first_repeat_),
-                   repeats_.excess());
+      log_.report(FaultKind::kRepeatedSamples, FaultChannel::kAll, log_.seconds(first_repeat_),
+                  repeats_.excess());
       repeats_.clear();
       first_repeat_ = -1;
     }
@@ -146,13 +146,12 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
     impulses_[c].update(sample.accel_mps2[c]);
     LevelJump jump;
     if (!levels_[c].update(sample.tick, sample.accel_mps2[c], jump)) continue;
-    if ((book_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) !=
-        0) {
+    if ((log_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) != 0) {
       continue;
     }
-    book_.report(FaultKind::kDcJump, channel_of(c), book_.seconds(jump.tick), jump.size_mps2);
-    book_.spoil(FaultKind::kDcJump, channel_of(c), jump.tick - block_ticks_ / 10,
-                jump.tick + block_ticks_ / 10);
+    log_.report(FaultKind::kDcJump, channel_of(c), log_.seconds(jump.tick), jump.size_mps2);
+    log_.spoil(FaultKind::kDcJump, channel_of(c), jump.tick - block_ticks_ / 10,
+               jump.tick + block_ticks_ / 10);
   }
 }
 
@@ -160,12 +159,12 @@ void Guard::watch_full_scale(const Sample& sample) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     if ((sample.saturated >> c & 1U) == 0) continue;
     if (saturated_[c]++ == 0) first_saturated_[c] = sample.tick;
-    book_.spoil(FaultKind::kClipping, channel_of(c), sample.tick, sample.tick);
+    log_.spoil(FaultKind::kClipping, channel_of(c), sample.tick, sample.tick);
     if (saturated_[c] < kFewSaturated) continue;
     const bool first = saturated_[c] == kFewSaturated;
-    book_.report(FaultKind::kClipping, channel_of(c),
-                 book_.seconds(first ? first_saturated_[c] : sample.tick),
-                 std::abs(sample.accel_mps2[c]), first ? kFewSaturated : 1);
+    log_.report(FaultKind::kClipping, channel_of(c),
+                log_.seconds(first ? first_saturated_[c] : sample.tick),
+                std::abs(sample.accel_mps2[c]), first ? kFewSaturated : 1);
   }
 }
 
@@ -177,8 +176,8 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     const std::int64_t sum = other + another;
     if (run.first_tick == 0 || codes[c] != run.code) {
       if (run.reported) {
-        book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(last_.tick),
-                     book_.seconds(last_.tick - run.first_tick + 1), 0);
+        log_.report(FaultKind::kStuckChannel, channel_of(c), log_.seconds(last_.tick),
+                    log_.seconds(last_.tick - run.first_tick + 1), 0);
       }
       run = {.code = codes[c], .first_tick = sample.tick, .lowest = sum, .highest = sum};
       continue;
@@ -188,12 +187,12 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     const bool stuck =
         sample.tick - run.first_tick + 1 >= stuck_ticks_ && run.highest - run.lowest > kOthersMove;
     if (!stuck) continue;
-    book_.spoil(FaultKind::kStuckChannel, channel_of(c),
-                run.reported ? sample.tick : run.first_tick, sample.tick);
+    log_.spoil(FaultKind::kStuckChannel, channel_of(c), run.reported ? sample.tick : run.first_tick,
+               sample.tick);
     if (run.reported) continue;
     run.reported = true;
-    book_.report(FaultKind::kStuckChannel, channel_of(c), book_.seconds(run.first_tick),
-                 book_.seconds(stuck_ticks_));
+    log_.report(FaultKind::kStuckChannel, channel_of(c), log_.seconds(run.first_tick),
+                log_.seconds(stuck_ticks_));
   }
 }
 
@@ -211,7 +210,7 @@ void Guard::take_strikes() noexcept {
     }
     tally.wrong += 1.0;
     wrong_[wrong_pushed_++ % wrong_.size()] = {strike.tick, c};
-    book_.spoil(FaultKind::kSpikes, channel_of(c), strike.tick - 1, strike.tick + 1);
+    log_.spoil(FaultKind::kSpikes, channel_of(c), strike.tick - 1, strike.tick + 1);
     if (tally.count < kPending) tally.pending[tally.count++] = strike;
   }
 }

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "dampline/guard/code_watch.hpp"
-#include "dampline/guard/fault_book.hpp"
-#include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/config.hpp"
+#include "dampline/guard/fault_log.hpp"
 #include "dampline/guard/impulse_power.hpp"
 #include "dampline/guard/level_watch.hpp"
 #include "dampline/guard/regularity.hpp"
@@ -49,19 +49,19 @@ class Guard {
   void finish() noexcept;
 
   /// One entry for each kind and channel, in the order in which they were found.
-  [[nodiscard]] std::span<const Fault> faults() const noexcept { return book_.faults(); }
+  [[nodiscard]] std::span<const Fault> faults() const noexcept { return log_.faults(); }
   /// Bit k set: fault kind k makes samples of these ticks useless; both ends included. Final when
   /// the newest sample is 12 s later; of noise bursts 60 s.
   [[nodiscard]] std::uint32_t spoilt(std::int64_t first_tick,
                                      std::int64_t last_tick) const noexcept {
-    return book_.spoilt(first_tick, last_tick);
+    return log_.spoilt(first_tick, last_tick);
   }
   [[nodiscard]] bool spoilt(FaultKind kind, FaultChannel channel,
                             std::int64_t tick) const noexcept {
-    return book_.spoilt(kind, channel, tick);
+    return log_.spoilt(kind, channel, tick);
   }
-  /// Single wrong samples, each told once and some 2 s after it was taken; false when there is no
-  /// more. Of those that nobody asks for in time the newest 16 stay.
+  /// Single wrong samples, each reported once and some 2 s after it was taken; false when there is
+  /// no more. Of those that nobody asks for in time the newest 16 stay.
   [[nodiscard]] bool next_wrong_sample(WrongSample& out) noexcept;
   /// Impacts and changes of speed: input, not faults.
   [[nodiscard]] const GuardInputs& inputs() const noexcept { return inputs_; }
@@ -114,7 +114,7 @@ class Guard {
   bool knows_steps_{false};
   std::int64_t block_ticks_;
   std::int64_t stuck_ticks_;
-  FaultBook book_;
+  FaultLog log_;
   GuardInputs inputs_{};
   std::array<CodeWatch, kChannels> codes_{};
   std::array<SpikeWatch, kChannels> spikes_;

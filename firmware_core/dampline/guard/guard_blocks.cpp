@@ -40,8 +40,8 @@ void Guard::judge_spikes(std::size_t channel) noexcept {
   } else if (tally.wrong >= kFewSpikes) {
     for (std::size_t i = 0; i < tally.count; ++i) {
       const Strike& strike = tally.pending[i];
-      book_.report(FaultKind::kSpikes, channel_of(channel), book_.seconds(strike.tick),
-                   static_cast<double>(strike.height) * unit(channel));
+      log_.report(FaultKind::kSpikes, channel_of(channel), log_.seconds(strike.tick),
+                  static_cast<double>(strike.height) * unit(channel));
     }
     tally.count = 0;
   }
@@ -51,17 +51,17 @@ void Guard::judge_spikes(std::size_t channel) noexcept {
 
 void Guard::take_code_verdict(std::size_t channel, std::int64_t tick) noexcept {
   const CodeVerdict verdict = codes_[channel].close();
-  const double began_s = book_.seconds(block_start_);
+  const double began_s = log_.seconds(block_start_);
   if (verdict.dead_bits > 0 && config_.step_mps2[channel] > 0.0) {
-    book_.report(FaultKind::kResolutionLoss, channel_of(channel), began_s,
-                 std::ldexp(unit(channel), verdict.dead_bits));
-    book_.spoil(FaultKind::kResolutionLoss, channel_of(channel), block_start_, tick);
+    log_.report(FaultKind::kResolutionLoss, channel_of(channel), began_s,
+                std::ldexp(unit(channel), verdict.dead_bits));
+    log_.spoil(FaultKind::kResolutionLoss, channel_of(channel), block_start_, tick);
   }
   if (verdict.clips) {
-    book_.report(FaultKind::kClipping, channel_of(channel), book_.seconds(verdict.clip_first),
-                 std::abs(static_cast<double>(verdict.clip_code)) * unit(channel),
-                 static_cast<std::uint64_t>(verdict.clip_count));
-    book_.spoil(FaultKind::kClipping, channel_of(channel), block_start_, tick);
+    log_.report(FaultKind::kClipping, channel_of(channel), log_.seconds(verdict.clip_first),
+                std::abs(static_cast<double>(verdict.clip_code)) * unit(channel),
+                static_cast<std::uint64_t>(verdict.clip_count));
+    log_.spoil(FaultKind::kClipping, channel_of(channel), block_start_, tick);
   }
 }
 
@@ -74,8 +74,8 @@ void Guard::close_block(std::int64_t tick) noexcept {
   }
   repeats_.forget();
   const bool whole = tick - block_start_ >= block_ticks_;
-  const bool sound = whole && spectral_.steady() && book_.spoilt(block_start_, tick) == 0;
-  wheelsets_.close_block(sound, tick, book_);
+  const bool sound = whole && spectral_.steady() && log_.spoilt(block_start_, tick) == 0;
+  wheelsets_.close_block(sound, tick, log_);
   spectral_.set_difference(wheelsets_.difference_mps2());
   if (spectral_.has_delay()) wheelsets_.set_delay(spectral_.delay_s());
   judge_time(last_);
@@ -91,8 +91,7 @@ void Guard::judge_time(const Sample& sample) noexcept {
   const bool wrong = std::abs(rate_hz / config_.sample_rate_hz - 1.0) > kWrongRate;
   wrong_rate_blocks_ = wrong ? wrong_rate_blocks_ + 1 : 0;
   if (wrong_rate_blocks_ < kRateBlocks) return;
-  book_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, book_.seconds(block_start_),
-               rate_hz);
+  log_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, log_.seconds(block_start_), rate_hz);
 }
 
 void Guard::finish() noexcept {

@@ -12,7 +12,7 @@ namespace dampline {
 /// How much of a channel's fast motion comes in impulses, as the power of white noise that would
 /// have it. The sixth difference passes what is above a third of the rate; of normal motion its
 /// mean square is that which its median tells, of wheel flats it is more. So noise, which comes all
-/// the time, is told from flats too weak to be seen one by one.
+/// the time, differs from flats too weak to be seen one by one.
 class ImpulsePower {
  public:
   void update(double accel_mps2) noexcept {

@@ -58,7 +58,7 @@ class SlipFinder {
   }
 
   std::size_t count_{0};
-  std::int64_t quiet_until_{0};  // tick; a slip is told once
+  std::int64_t quiet_until_{0};  // tick; a slip is reported once
   double rough_{0.0};            // smoothed share of windows that no shift explains: impacts
   std::array<ShiftSums, kMost> chunks_{};
   std::array<Window, kRing> windows_{};

@@ -50,7 +50,7 @@ void SpectralGuard::restart() noexcept {
   aligned_ = has_delay_ = steady_ = false;
 }
 
-void SpectralGuard::advance(FaultBook& book, GuardInputs& inputs) noexcept {
+void SpectralGuard::advance(FaultLog& log, GuardInputs& inputs) noexcept {
   if (spectra_.advance()) {
     const SpectrumSums& sums = spectra_.sums();
     if (aligned_) {
@@ -65,20 +65,20 @@ void SpectralGuard::advance(FaultBook& book, GuardInputs& inputs) noexcept {
     return;
   }
   if (next_ != Test::kNone) {
-    judge(book, inputs);
+    judge(log, inputs);
     return;
   }
-  if (survey_.busy() && survey_.advance()) take_block(book);
+  if (survey_.busy() && survey_.advance()) take_block(log);
 }
 
-void SpectralGuard::take_block(FaultBook& book) noexcept {
+void SpectralGuard::take_block(FaultLog& log) noexcept {
   const BlockFigures& block = survey_.figures();
-  const std::uint32_t spoilt = book.spoilt(block.first_tick, block.last_tick);
+  const std::uint32_t spoilt = log.spoilt(block.first_tick, block.last_tick);
   const bool moving = block.wheelset_mps2 > kMovingMps2;
   if (moving && spoilt == 0) next_ = Test::kOrder;
 }
 
-void SpectralGuard::judge(FaultBook& book, GuardInputs& inputs) noexcept {
+void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
   const Test now = next_;
   next_ = Test::kNone;
   switch (now) {
@@ -86,30 +86,30 @@ void SpectralGuard::judge(FaultBook& book, GuardInputs& inputs) noexcept {
       return;
     case Test::kOrder:
       count_impacts(inputs);
-      if (!in_order(book)) return;
+      if (!in_order(log)) return;
       align();
       next_ = Test::kTiming;
       return;
     case Test::kTiming:
       timing_.add_block(survey_.figures(), usable_);
-      timing_.judge(book, inputs);
+      timing_.judge(log, inputs);
       next_ = Test::kGain;
       return;
     case Test::kGain:
-      if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(book);
+      if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(log);
       next_ = Test::kRate;
       return;
     case Test::kRate:
-      if (steady_) judge_rate(book);
+      if (steady_) judge_rate(log);
       next_ = Test::kNoise;
       return;
     case Test::kNoise:
-      judge_noise(book);
+      judge_noise(log);
       next_ = Test::kBurst;
       return;
     case Test::kBurst:
-      judge_burst(book, 0);
-      judge_burst(book, 1);
+      judge_burst(log, 0);
+      judge_burst(log, 1);
       return;
   }
 }
@@ -122,16 +122,16 @@ void SpectralGuard::count_impacts(const GuardInputs& inputs) noexcept {
 }
 
 // Frame and wheelset exchanged; a sensor upside down; the wheelsets exchanged.
-bool SpectralGuard::in_order(FaultBook& book) noexcept {
+bool SpectralGuard::in_order(FaultLog& log) noexcept {
   const BlockFigures& block = survey_.figures();
-  const double time_s = book.seconds(block.first_tick);
+  const double time_s = log.seconds(block.first_tick);
   const auto lasting = [](int& blocks, bool now) {
     blocks = now ? blocks + 1 : 0;
     return blocks >= kBlocksInARow;
   };
   const bool swapped = block.frame_power > kSwapped;
   if (lasting(swapped_blocks_, swapped)) {
-    book.report(FaultKind::kSwappedChannels, FaultChannel::kAll, time_s, block.frame_power);
+    log.report(FaultKind::kSwappedChannels, FaultChannel::kAll, time_s, block.frame_power);
   }
   if (swapped) return false;
   const bool opposite = block.match < -kMatch;
@@ -140,7 +140,7 @@ bool SpectralGuard::in_order(FaultBook& book) noexcept {
                                          opposite && block.follow[0] >= block.follow[1]};
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (lasting(inverted_blocks_[c], down[c])) {
-      book.report(FaultKind::kWrongPolarity, channel_of(c), time_s, -1.0);
+      log.report(FaultKind::kWrongPolarity, channel_of(c), time_s, -1.0);
     }
   }
   if (opposite || frame_down) return false;
@@ -149,7 +149,7 @@ bool SpectralGuard::in_order(FaultBook& book) noexcept {
                                                                 : -1;
   const bool reversed = block.match > kMatch && block.match_delay * expected < 0;
   if (lasting(reversed_blocks_, reversed)) {
-    book.report(FaultKind::kSwappedChannels, FaultChannel::kWheelsets, time_s, block.match);
+    log.report(FaultKind::kSwappedChannels, FaultChannel::kWheelsets, time_s, block.match);
   }
   return true;
 }
@@ -172,7 +172,7 @@ void SpectralGuard::align() noexcept {
   spectra_.set_delay(block.match_delay);
 }
 
-void SpectralGuard::judge_gain(FaultBook& book) noexcept {
+void SpectralGuard::judge_gain(FaultLog& log) noexcept {
   const BlockFigures& block = survey_.figures();
   if (is_noisy(block)) return;  // a burst would pass for a change of gain
   gain_.add(block.log_gain, (block.first_tick + block.last_tick) / 2);
@@ -183,20 +183,20 @@ void SpectralGuard::judge_gain(FaultBook& book) noexcept {
   const std::int64_t tick = (gain_.tick(step.block) + gain_.tick(step.block - 1)) / 2;
   const double change = gain_.change_at(tick);
   const bool at_once = std::abs(change) > kAtOnce * gain_.range();
-  book.report(FaultKind::kGainChange, FaultChannel::kWheelsets,
-              book.seconds(at_once ? tick : gain_.tick(0)),
-              100.0 * std::expm1(at_once ? change : gain_.change_since(gain_.tick(0))));
+  log.report(FaultKind::kGainChange, FaultChannel::kWheelsets,
+             log.seconds(at_once ? tick : gain_.tick(0)),
+             100.0 * std::expm1(at_once ? change : gain_.change_since(gain_.tick(0))));
   if (at_once) gain_.drop(step.block + 1);
 }
 
-void SpectralGuard::judge_rate(FaultBook& book) noexcept {
+void SpectralGuard::judge_rate(FaultLog& log) noexcept {
   if (config_.wheelbase_m <= 0.0 || config_.speed_mps <= 0.0) return;
   // Where a channel is out of step the delay says nothing of the rate.
   for (const FaultKind kind : {FaultKind::kClockDrift, FaultKind::kTimingStep,
                                FaultKind::kLostSamples, FaultKind::kRepeatedSamples}) {
     for (const FaultChannel channel :
          {FaultChannel::kWheelset1, FaultChannel::kWheelset2, FaultChannel::kWheelsets}) {
-      if (book.find(kind, channel) != nullptr) return;
+      if (log.find(kind, channel) != nullptr) return;
     }
   }
   const double delay_s = std::abs(timing_.delay_s());
@@ -204,8 +204,8 @@ void SpectralGuard::judge_rate(FaultBook& book) noexcept {
   const double ratio = delay_s * config_.speed_mps / config_.wheelbase_m;
   wrong_rate_blocks_ = std::abs(ratio - 1.0) > kWrongRate ? wrong_rate_blocks_ + 1 : 0;
   if (wrong_rate_blocks_ < kRateBlocks) return;
-  book.report(FaultKind::kWrongSampleRate, FaultChannel::kAll,
-              book.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
+  log.report(FaultKind::kWrongSampleRate, FaultChannel::kAll,
+             log.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
 }
 
 double SpectralGuard::noise_mps2(std::size_t channel) const noexcept {
@@ -230,7 +230,7 @@ bool SpectralGuard::is_noisy(const BlockFigures& block) const noexcept {
   return usual > 0.0 && now > kNoisy * usual;
 }
 
-void SpectralGuard::judge_noise(FaultBook& book) noexcept {
+void SpectralGuard::judge_noise(FaultLog& log) noexcept {
   const BlockFigures& block = survey_.figures();
   const std::int64_t middle = (block.first_tick + block.last_tick) / 2;
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -241,7 +241,7 @@ void SpectralGuard::judge_noise(FaultBook& book) noexcept {
     if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
     BlockSeries newest = level_[c];
     newest.drop(newest.size() - std::min<std::size_t>(newest.size(), kNoiseBlocks[c] + 1));
-    if (c > 0 && book.has(FaultKind::kSoftSaturation)) continue;  // it makes overtones
+    if (c > 0 && log.has(FaultKind::kSoftSaturation)) continue;  // it makes overtones
     const double noise_mps2 = std::sqrt(newest.median() * 0.5 * config_.sample_rate_hz);
     // Second differences of white noise have the root of six times its deviation; impacts do not
     // move their median.
@@ -249,7 +249,7 @@ void SpectralGuard::judge_noise(FaultBook& book) noexcept {
         change_mps2_[c] == 0.0 || std::sqrt(6.0) * noise_mps2 < kWhite * change_mps2_[c];
     const bool lasting = c == 0 || noise_mps2 < kLasting * difference_mps2_;
     if (newest.median() > noise_limit(c) && white && lasting) {
-      book.report(FaultKind::kExcessNoise, channel_of(c), book.seconds(newest.tick(0)), noise_mps2);
+      log.report(FaultKind::kExcessNoise, channel_of(c), log.seconds(newest.tick(0)), noise_mps2);
     }
   }
   noise_[0].add(block.noise[0], middle);
@@ -257,7 +257,7 @@ void SpectralGuard::judge_noise(FaultBook& book) noexcept {
   if (few_impacts_[1] && few_impacts_[2] && steady_) noise_[1].add(std::max(both, 0.0), middle);
 }
 
-void SpectralGuard::judge_burst(FaultBook& book, std::size_t which) noexcept {
+void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
   const BlockSeries& series = noise_[which];
   if (series.size() < kBurstBlocks) return;
   const double declared = which == 0 ? noise_limit(0) : noise_limit(1) + noise_limit(2);
@@ -267,11 +267,11 @@ void SpectralGuard::judge_burst(FaultBook& book, std::size_t which) noexcept {
     if (series[i] <= limit || series.tick(i) <= burst_tick_[which]) continue;
     burst_tick_[which] = series.tick(i);
     const auto half = PairSpectra::kHop * std::int64_t{PairSpectra::kSegmentsPerBlock + 1} / 2;
-    if (book.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;
+    if (log.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;
     const FaultChannel where = which == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets;
-    book.spoil(FaultKind::kNoiseBurst, where, series.tick(i) - half, series.tick(i) + half);
-    book.report(FaultKind::kNoiseBurst, where, book.seconds(series.tick(i)),
-                std::sqrt(series[i] * 0.5 * config_.sample_rate_hz));
+    log.spoil(FaultKind::kNoiseBurst, where, series.tick(i) - half, series.tick(i) + half);
+    log.report(FaultKind::kNoiseBurst, where, log.seconds(series.tick(i)),
+               std::sqrt(series[i] * 0.5 * config_.sample_rate_hz));
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/block_survey.hpp"
-#include "dampline/guard/fault_book.hpp"
-#include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/config.hpp"
+#include "dampline/guard/fault_log.hpp"
 #include "dampline/guard/pair_spectra.hpp"
 #include "dampline/guard/timing_watch.hpp"
 
@@ -22,8 +22,8 @@ class SpectralGuard {
             bool made_up) noexcept {
     spectra_.push(tick, accel_mps2, made_up);
   }
-  /// A slice of the work that is due; faults go to the book. `inputs.impacts` tells impacts so far.
-  void advance(FaultBook& book, GuardInputs& inputs) noexcept;
+  /// A slice of the work that is due; faults go to the log. `inputs.impacts` tells impacts so far.
+  void advance(FaultLog& log, GuardInputs& inputs) noexcept;
   /// Robust deviation of the second difference of a channel: white noise shows there, too.
   void set_change_scale(std::size_t channel, double mps2) noexcept { change_mps2_[channel] = mps2; }
   /// What of a channel's fast motion comes in impulses, as white noise of that power.
@@ -53,16 +53,16 @@ class SpectralGuard {
  private:
   enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kRate, kNoise, kBurst };
 
-  void take_block(FaultBook& book) noexcept;
-  void judge(FaultBook& book, GuardInputs& inputs) noexcept;
-  [[nodiscard]] bool in_order(FaultBook& book) noexcept;
+  void take_block(FaultLog& log) noexcept;
+  void judge(FaultLog& log, GuardInputs& inputs) noexcept;
+  [[nodiscard]] bool in_order(FaultLog& log) noexcept;
   void align() noexcept;
-  void judge_gain(FaultBook& book) noexcept;
-  void judge_rate(FaultBook& book) noexcept;
+  void judge_gain(FaultLog& log) noexcept;
+  void judge_rate(FaultLog& log) noexcept;
   [[nodiscard]] bool is_noisy(const BlockFigures& block) const noexcept;
-  void judge_noise(FaultBook& book) noexcept;
+  void judge_noise(FaultLog& log) noexcept;
   void count_impacts(const GuardInputs& inputs) noexcept;
-  void judge_burst(FaultBook& book, std::size_t which) noexcept;
+  void judge_burst(FaultLog& log, std::size_t which) noexcept;
   [[nodiscard]] double noise_limit(std::size_t channel) const noexcept;  // density
 
   GuardConfig config_;

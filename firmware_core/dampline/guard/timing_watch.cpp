@@ -96,15 +96,15 @@ bool TimingWatch::sudden(std::int64_t tick, double size_s) const noexcept {
   return largest > kSudden * std::abs(size_s);
 }
 
-void TimingWatch::report_step(FaultBook& book, FaultChannel channel, std::int64_t tick,
-                              double size_s, double whole_tolerance) const noexcept {
+void TimingWatch::report_step(FaultLog& log, FaultChannel channel, std::int64_t tick, double size_s,
+                              double whole_tolerance) const noexcept {
   const double samples = size_s * rate_hz_;
   const double whole = std::round(samples);
   if (whole != 0.0 && std::abs(samples - whole) < whole_tolerance) {
     const FaultKind kind = whole < 0.0 ? FaultKind::kLostSamples : FaultKind::kRepeatedSamples;
-    book.report(kind, channel, book.seconds(tick), std::abs(whole));
+    log.report(kind, channel, log.seconds(tick), std::abs(whole));
   } else {
-    book.report(FaultKind::kTimingStep, channel, book.seconds(tick), size_s);
+    log.report(FaultKind::kTimingStep, channel, log.seconds(tick), size_s);
   }
 }
 
@@ -134,7 +134,7 @@ TimingWatch::Cause TimingWatch::cause_of(double delay_s, const std::array<double
 }
 
 // True when the change explains what the frame's lag does as well.
-bool TimingWatch::judge_wheelsets(FaultBook& book, GuardInputs& inputs) noexcept {
+bool TimingWatch::judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept {
   if (delay_.size() < kEnough) return false;
   const BlockSeries::Step step = delay_.step();
   if (step.significance <= kSignificant || std::abs(step.size) <= kLeastDelayS) return false;
@@ -162,11 +162,11 @@ bool TimingWatch::judge_wheelsets(FaultBook& book, GuardInputs& inputs) noexcept
   const double sign = cause == Cause::kWheelset1 ? -1.0 : 1.0;  // wheelset 1 late: less delay
   const bool straight = delay_.trend().bend < kStraight;
   if (at_once && (cause == Cause::kUnknown || !straight)) {
-    report_step(book, channel, tick, sign * change_s, kWholeDelay);
+    report_step(log, channel, tick, sign * change_s, kWholeDelay);
     forget_before(tick);
   } else {
-    book.report(FaultKind::kClockDrift, channel, book.seconds(delay_.tick(0)),
-                sign * 1e6 * slope(delay_));
+    log.report(FaultKind::kClockDrift, channel, log.seconds(delay_.tick(0)),
+               sign * 1e6 * slope(delay_));
   }
   return true;
 }
@@ -181,7 +181,7 @@ void TimingWatch::take_speed_change(std::int64_t tick, GuardInputs& inputs) noex
   delay_.drop(delay_.size() - BlockSeries::kSide);
 }
 
-void TimingWatch::judge_frame(FaultBook& book) noexcept {
+void TimingWatch::judge_frame(FaultLog& log) noexcept {
   const BlockSeries& lag = lag_[0];
   if (lag.size() < kEnough) return;
   const BlockSeries::Step step = lag.step();
@@ -199,16 +199,16 @@ void TimingWatch::judge_frame(FaultBook& book) noexcept {
     if (change_s[i] * change_s[0] < kSameWay * change_s[0] * change_s[0]) return;
   }
   if (is_sudden) {
-    report_step(book, FaultChannel::kFrame, tick, change_s[0], kWholeLag);
+    report_step(log, FaultChannel::kFrame, tick, change_s[0], kWholeLag);
     forget_before(tick);
     return;
   }
-  book.report(FaultKind::kClockDrift, FaultChannel::kFrame, book.seconds(lag.tick(0)),
-              1e6 * slope(lag));
+  log.report(FaultKind::kClockDrift, FaultChannel::kFrame, log.seconds(lag.tick(0)),
+             1e6 * slope(lag));
 }
 
-void TimingWatch::judge(FaultBook& book, GuardInputs& inputs) noexcept {
-  if (!judge_wheelsets(book, inputs)) judge_frame(book);
+void TimingWatch::judge(FaultLog& log, GuardInputs& inputs) noexcept {
+  if (!judge_wheelsets(log, inputs)) judge_frame(log);
 }
 
 }  // namespace dampline

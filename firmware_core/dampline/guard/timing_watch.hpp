@@ -6,8 +6,8 @@
 
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/block_survey.hpp"
-#include "dampline/guard/fault_book.hpp"
-#include "dampline/guard/guard_config.hpp"
+#include "dampline/guard/config.hpp"
+#include "dampline/guard/fault_log.hpp"
 
 namespace dampline {
 
@@ -23,7 +23,7 @@ class TimingWatch {
   void add_segment(std::int64_t tick, double delay_s) noexcept;
   void add_block(const BlockFigures& block, bool has_delay) noexcept;
   /// Looks for changes; reports each once, a drift again and again with its newest size.
-  void judge(FaultBook& book, GuardInputs& inputs) noexcept;
+  void judge(FaultLog& log, GuardInputs& inputs) noexcept;
   /// A segment's delays between the wheelsets were no good from this tick on.
   void discard_segments(std::int64_t tick) noexcept;
   /// Wheelset 2 moved against wheelset 1 within a few samples, at this tick; -1: never.
@@ -43,13 +43,13 @@ class TimingWatch {
   [[nodiscard]] static Cause cause_of(double delay_s, const std::array<double, 3>& lag_s,
                                       bool may_stay) noexcept;
   [[nodiscard]] bool jumped(std::int64_t tick) const noexcept;
-  [[nodiscard]] bool judge_wheelsets(FaultBook& book, GuardInputs& inputs) noexcept;
+  [[nodiscard]] bool judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept;
   void take_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept;
-  void judge_frame(FaultBook& book) noexcept;
+  void judge_frame(FaultLog& log) noexcept;
   void forget_before(std::int64_t tick) noexcept;
   [[nodiscard]] bool sudden(std::int64_t tick, double size_s) const noexcept;
   [[nodiscard]] double slope(const BlockSeries& series) const noexcept;  // s/s
-  void report_step(FaultBook& book, FaultChannel channel, std::int64_t tick, double size_s,
+  void report_step(FaultLog& log, FaultChannel channel, std::int64_t tick, double size_s,
                    double whole_tolerance) const noexcept;
 
   double rate_hz_;

@@ -75,7 +75,7 @@ bool WheelsetWatch::differs_from(double delay_s) const noexcept {
 }
 
 void WheelsetWatch::update(std::int64_t tick, double wheelset1_mps2, double wheelset2_mps2,
-                           FaultBook& book) noexcept {
+                           FaultLog& log) noexcept {
   const double share = 1.0 / (kSmoothingS * rate_hz_);
   const std::array<double, 2> value{wheelset1_mps2, wheelset2_mps2};
   if (count_ == 0) mean_ = value;
@@ -91,7 +91,7 @@ void WheelsetWatch::update(std::int64_t tick, double wheelset1_mps2, double whee
   if (++chunk_samples_ % ShiftSums::kSamples == 0) find_slip();
   if (chunk_samples_ != kChunk) return;
   end_chunk();
-  report_slips(tick, book);
+  report_slips(tick, log);
 }
 
 void WheelsetWatch::Direction::add(double x, double c, double y) noexcept {
@@ -213,7 +213,7 @@ void WheelsetWatch::strike(std::int64_t tick) noexcept {
       static_cast<std::size_t>(std::remove_if(slips_.begin(), end, near) - slips_.begin());
 }
 
-void WheelsetWatch::report_slips(std::int64_t tick, FaultBook& book) noexcept {
+void WheelsetWatch::report_slips(std::int64_t tick, FaultLog& log) noexcept {
   if (slip_count_ >= kTooMany) slip_count_ = 0;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < slip_count_; ++i) {
@@ -228,16 +228,16 @@ void WheelsetWatch::report_slips(std::int64_t tick, FaultBook& book) noexcept {
       continue;
     }
     const FaultKind kind = slip.samples > 0 ? FaultKind::kLostSamples : FaultKind::kRepeatedSamples;
-    book.report(kind, FaultChannel::kAll, book.seconds(slip.tick), std::abs(slip.samples));
-    book.spoil(kind, FaultChannel::kAll, slip.tick - 2 * kChunk, slip.tick + std::abs(whole_));
+    log.report(kind, FaultChannel::kAll, log.seconds(slip.tick), std::abs(slip.samples));
+    log.spoil(kind, FaultChannel::kAll, slip.tick - 2 * kChunk, slip.tick + std::abs(whole_));
   }
   slip_count_ = kept;
 }
 
-void WheelsetWatch::close_block(bool sound, std::int64_t tick, FaultBook& book) noexcept {
+void WheelsetWatch::close_block(bool sound, std::int64_t tick, FaultLog& log) noexcept {
   if (sound && has_delay_ && block_[0].xx > 0.0 && block_[1].xx > 0.0) {
     for (std::size_t i = 0; i < 2; ++i) cubic_[i].add(block_[i].cubic(), tick);
-    judge_saturation(tick, book);
+    judge_saturation(tick, log);
   }
   block_ = {};
   if (block_usual_.count() > 0) difference_.add(block_usual_.median(), tick);
@@ -250,7 +250,7 @@ double WheelsetWatch::difference_mps2() const noexcept {
   return kUnitMps2 * std::sqrt(newest.median());
 }
 
-void WheelsetWatch::judge_saturation(std::int64_t tick, FaultBook& book) noexcept {
+void WheelsetWatch::judge_saturation(std::int64_t tick, FaultLog& log) noexcept {
   const auto blocks = static_cast<double>(cubic_[0].size());
   if (cubic_[0].size() < kCubicBlocks) return;
   const std::array<double, 2> c{cubic_[0].median(), cubic_[1].median()};
@@ -263,7 +263,7 @@ void WheelsetWatch::judge_saturation(std::int64_t tick, FaultBook& book) noexcep
   }
   // The wheelset that reads too little of what the other shows saturates.
   const FaultChannel channel = c[0] < 0.0 ? FaultChannel::kWheelset2 : FaultChannel::kWheelset1;
-  book.report(FaultKind::kSoftSaturation, channel, book.seconds(tick), 100.0 * larger);
+  log.report(FaultKind::kSoftSaturation, channel, log.seconds(tick), 100.0 * larger);
 }
 
 }  // namespace dampline

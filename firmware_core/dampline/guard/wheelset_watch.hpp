@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "dampline/guard/block_series.hpp"
-#include "dampline/guard/fault_book.hpp"
+#include "dampline/guard/fault_log.hpp"
 #include "dampline/guard/log_histogram.hpp"
 #include "dampline/guard/slip_finder.hpp"
 
@@ -23,11 +23,11 @@ class WheelsetWatch {
   explicit WheelsetWatch(double sample_rate_hz) noexcept;
 
   void update(std::int64_t tick, double wheelset1_mps2, double wheelset2_mps2,
-              FaultBook& book) noexcept;
+              FaultLog& log) noexcept;
   /// The delay of wheelset 2; takes effect with the next sample.
   void set_delay(double delay_s) noexcept;
   /// Block's end. `sound`: nothing spoils the block.
-  void close_block(bool sound, std::int64_t tick, FaultBook& book) noexcept;
+  void close_block(bool sound, std::int64_t tick, FaultLog& log) noexcept;
   /// An impact or wrong sample at this tick; may come some seconds late.
   void strike(std::int64_t tick) noexcept;
   void restart() noexcept;
@@ -58,8 +58,8 @@ class WheelsetWatch {
   void follow_slip() noexcept;
   void find_slip() noexcept;
   [[nodiscard]] bool struck(const Slip& slip, std::int64_t tick) const noexcept;
-  void report_slips(std::int64_t tick, FaultBook& book) noexcept;
-  void judge_saturation(std::int64_t tick, FaultBook& book) noexcept;
+  void report_slips(std::int64_t tick, FaultLog& log) noexcept;
+  void judge_saturation(std::int64_t tick, FaultLog& log) noexcept;
   [[nodiscard]] static double& ring(std::array<double, kRing>& of, std::int64_t n) noexcept {
     return of[static_cast<std::size_t>(n) % kRing];
   }

@@ -7,10 +7,10 @@
 namespace dampline {
 
 /// Where every frame went: sent = processed + kernel_drops + gaps + excluded, without a rest.
-/// What nobody saw is told by the counters within the frames: frames before the first and after the
-/// last one that arrived are unknown, and how long a pause of more than kPauseTicks was is told by
-/// time. Exact where each channel has a counter and an identifier of its own, and where the kernel
-/// drops no other frames than theirs.
+/// What nobody saw follows from the counters within the frames: frames before the first and after
+/// the last one that arrived are unknown, and how long a pause of more than kPauseTicks was follows
+/// from time. Exact where each channel has a counter and an identifier of its own, and where the
+/// kernel drops no other frames than theirs.
 struct FrameLedger {
   std::uint64_t sent{0};
   std::uint64_t processed{0};     ///< became part of a sample

@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <span>
 
-#include "dampline/guard/fault.hpp"
+#include "dampline/faults.hpp"
 
 namespace dampline {
 
 /// The faults of a stream: one entry for each kind and channel, and which seconds are spoilt.
-class FaultBook {
+class FaultLog {
  public:
   static constexpr std::size_t kMost = kFaultKinds * kFaultChannels;
   static constexpr std::int64_t kSeconds = 4096;  ///< how far back spoilt seconds are known
 
   static constexpr std::uint32_t kGapBit = 1U << kFaultKinds;  ///< see spoil_by_gap()
 
-  explicit FaultBook(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
+  explicit FaultLog(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
 
   /// One more event. Sizes of lost and repeated samples add, of the others the largest stays.
   void report(FaultKind kind, FaultChannel channel, double time_s, double size,

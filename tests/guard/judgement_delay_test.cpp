@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/sample_hold.hpp"
+#include "dampline/guard/judgement_delay.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ constexpr std::size_t kWait = 24 * 300;
 struct Held {
   std::vector<Sample> in;
   std::vector<Sample> out;
-  SampleHold::Counts counts;
+  JudgementDelay::Counts counts;
 };
 
 std::vector<Sample> record_of(double length_s, const sim::RecordFaultConfig& faults) {
@@ -40,7 +40,7 @@ Held hold(std::vector<Sample> samples, std::size_t wait = kWait) {
   for (std::size_t c = 0; c < kChannels; ++c)
     config.step_mps2[c] = sim::count_scale_mps2(simulation.sensors.range_mps2[c]);
   const auto guard = std::make_unique<Guard>(config);
-  const auto held = std::make_unique<SampleHold>(wait);
+  const auto held = std::make_unique<JudgementDelay>(wait);
   Held result;
   Sample due;
   for (const Sample& sample : samples) {
@@ -59,7 +59,7 @@ bool same(const Sample& a, const Sample& b) {
          a.saturated == b.saturated && a.spoilt == b.spoilt;
 }
 
-TEST(SampleHold, PassesSoundSamplesOnAsTheyAre) {
+TEST(JudgementDelay, PassesSoundSamplesOnAsTheyAre) {
   for (const std::size_t wait : {std::size_t{0}, std::size_t{300}, kWait}) {
     const Held held = hold(record_of(60.0, {}), wait);
     ASSERT_EQ(held.out.size(), held.in.size());
@@ -68,11 +68,11 @@ TEST(SampleHold, PassesSoundSamplesOnAsTheyAre) {
   }
 }
 
-TEST(SampleHold, GivesOneSampleForEachOneWhateverTheTicks) {
+TEST(JudgementDelay, GivesOneSampleForEachOneWhateverTheTicks) {
   std::vector<Sample> samples = record_of(60.0, {});
   samples.erase(samples.begin() + 9000, samples.begin() + 15000);
   const auto guard = std::make_unique<Guard>(GuardConfig{});
-  const auto held = std::make_unique<SampleHold>(600);
+  const auto held = std::make_unique<JudgementDelay>(600);
   Sample due;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     guard->update(samples[i]);
@@ -84,7 +84,7 @@ TEST(SampleHold, GivesOneSampleForEachOneWhateverTheTicks) {
 }
 
 /// Against the record without the fault.
-TEST(SampleHold, ReplacesWrongSamplesByWhatTheirNeighboursSay) {
+TEST(JudgementDelay, ReplacesWrongSamplesByWhatTheirNeighboursSay) {
   const std::vector<Sample> sound = record_of(120.0, {});
   std::vector<Sample> spiked = sound;
   const std::vector<std::size_t> places{7000, 12500, 18000, 23456, 30000};
@@ -97,7 +97,7 @@ TEST(SampleHold, ReplacesWrongSamplesByWhatTheirNeighboursSay) {
     EXPECT_NEAR(held.out[i].accel_mps2[1], sound[i].accel_mps2[1], 3.0) << i;
 }
 
-TEST(SampleHold, LeavesOutAJumpOfTheZeroAndABurst) {
+TEST(JudgementDelay, LeavesOutAJumpOfTheZeroAndABurst) {
   sim::RecordFaultConfig faults;
   faults.start_s = 90.0;
   faults.end_s = 100.0;
@@ -117,7 +117,7 @@ TEST(SampleHold, LeavesOutAJumpOfTheZeroAndABurst) {
   EXPECT_FALSE(spoilt(burst, 140.0));
 }
 
-TEST(SampleHold, MakesAnEstimateFromARecordWithSpikes) {
+TEST(JudgementDelay, MakesAnEstimateFromARecordWithSpikes) {
   sim::RecordFaultConfig faults;
   faults.spikes[1] = 30;
   faults.spike_mps2 = 40.0;

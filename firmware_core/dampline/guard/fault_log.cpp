@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/fault_book.hpp"
+#include "dampline/guard/fault_log.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace dampline {
 
-const Fault* FaultBook::find(FaultKind kind, FaultChannel channel) const noexcept {
+const Fault* FaultLog::find(FaultKind kind, FaultChannel channel) const noexcept {
   for (std::size_t i = 0; i < size_; ++i) {
     if (faults_[i].kind == kind && faults_[i].channel == channel) return &faults_[i];
   }
   return nullptr;
 }
 
-bool FaultBook::has(FaultKind kind) const noexcept {
+bool FaultLog::has(FaultKind kind) const noexcept {
   return std::any_of(faults_.begin(), faults_.begin() + static_cast<std::ptrdiff_t>(size_),
                      [kind](const Fault& fault) { return fault.kind == kind; });
 }
 
-void FaultBook::report(FaultKind kind, FaultChannel channel, double time_s, double size,
-                       std::uint64_t events) noexcept {
+void FaultLog::report(FaultKind kind, FaultChannel channel, double time_s, double size,
+                      std::uint64_t events) noexcept {
   const Fault* const known = find(kind, channel);
   if (known == nullptr) {
     faults_[size_++] = {.kind = kind,
@@ -42,7 +42,7 @@ void FaultBook::report(FaultKind kind, FaultChannel channel, double time_s, doub
 }
 
 template <typename Change>
-void FaultBook::change(std::int64_t first_tick, std::int64_t last_tick, Change what) noexcept {
+void FaultLog::change(std::int64_t first_tick, std::int64_t last_tick, Change what) noexcept {
   const std::int64_t last = second_of(last_tick);
   const std::int64_t first =
       std::max(second_of(std::max<std::int64_t>(first_tick, 0)), last - kSeconds + 1);
@@ -53,20 +53,20 @@ void FaultBook::change(std::int64_t first_tick, std::int64_t last_tick, Change w
   }
 }
 
-void FaultBook::spoil(FaultKind kind, FaultChannel channel, std::int64_t first_tick,
-                      std::int64_t last_tick) noexcept {
+void FaultLog::spoil(FaultKind kind, FaultChannel channel, std::int64_t first_tick,
+                     std::int64_t last_tick) noexcept {
   change(first_tick, last_tick, [=](Second& entry) {
     std::uint16_t& kinds = entry.kinds[static_cast<std::size_t>(channel)];
     kinds = static_cast<std::uint16_t>(kinds | 1U << static_cast<unsigned>(kind));
   });
 }
 
-void FaultBook::spoil_by_gap(std::int64_t first_tick, std::int64_t last_tick) noexcept {
+void FaultLog::spoil_by_gap(std::int64_t first_tick, std::int64_t last_tick) noexcept {
   spoil(FaultKind::kLostSamples, FaultChannel::kAll, first_tick, last_tick);
   change(first_tick, last_tick, [](Second& entry) { entry.gap = true; });
 }
 
-std::uint32_t FaultBook::spoilt(std::int64_t first_tick, std::int64_t last_tick) const noexcept {
+std::uint32_t FaultLog::spoilt(std::int64_t first_tick, std::int64_t last_tick) const noexcept {
   std::uint32_t kinds = 0;
   const std::int64_t last = second_of(last_tick);
   for (std::int64_t second = std::max(second_of(first_tick), last - kSeconds + 1); second <= last;
@@ -79,7 +79,7 @@ std::uint32_t FaultBook::spoilt(std::int64_t first_tick, std::int64_t last_tick)
   return kinds;
 }
 
-bool FaultBook::spoilt(FaultKind kind, FaultChannel channel, std::int64_t tick) const noexcept {
+bool FaultLog::spoilt(FaultKind kind, FaultChannel channel, std::int64_t tick) const noexcept {
   const std::int64_t second = second_of(tick);
   const Second& entry = spoilt_[slot(std::max<std::int64_t>(second, 0))];
   const unsigned kinds = entry.kinds[static_cast<std::size_t>(channel)];

@@ -6,6 +6,11 @@
 
 namespace dampline {
 
+/// What the guards found wrong with the data themselves, so that it is never taken for a property
+/// of the suspension. Plain data; a list of faults has one entry for each kind and channel, at most
+/// kFaultKinds * kFaultChannels. How each kind is found: the room guard/; thresholds and the
+/// records that they come from: docs/faults.md.
+
 /// What can be wrong with the data before they say anything about the suspension.
 enum class FaultKind : std::uint8_t {
   kClipping,         ///< values end at a level: full scale or below it
@@ -31,6 +36,8 @@ inline constexpr std::size_t kFaultKinds = 16;
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
 inline constexpr std::size_t kFaultChannels = 5;
 
+/// Everything known of one kind of fault in one channel. Times are of the record, from its first
+/// tick at the nominal rate.
 struct Fault {
   FaultKind kind{};
   FaultChannel channel{};
@@ -51,6 +58,7 @@ struct Fault {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+/// The unit of Fault::size; "-" and "ratio" have none.
 [[nodiscard]] constexpr const char* unit_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kUnits{
       "m/s^2", "s", "m/s^2", "m/s^2", "samples", "samples", "s", "ppm",
@@ -64,6 +72,7 @@ struct Fault {
   return kNames[static_cast<std::size_t>(channel)];
 }
 
+/// The place of one channel, indexed as Sample::accel_mps2 is.
 [[nodiscard]] constexpr FaultChannel channel_of(std::size_t channel) noexcept {
   return static_cast<FaultChannel>(channel);
 }

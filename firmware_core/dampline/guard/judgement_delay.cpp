@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/sample_hold.hpp"
+#include "dampline/guard/judgement_delay.hpp"
 
 #include <algorithm>
 
@@ -15,12 +15,12 @@ bool passes(std::uint32_t kinds) noexcept {
   if ((kinds & (bit(FaultKind::kDcJump) | bit(FaultKind::kNoiseBurst))) != 0) return true;
   const bool slips =
       (kinds & (bit(FaultKind::kLostSamples) | bit(FaultKind::kRepeatedSamples))) != 0;
-  return slips && (kinds & FaultBook::kGapBit) == 0;
+  return slips && (kinds & FaultLog::kGapBit) == 0;
 }
 
 }  // namespace
 
-bool SampleHold::push(const Sample& sample, Guard& guard, Sample& out) noexcept {
+bool JudgementDelay::push(const Sample& sample, Guard& guard, Sample& out) noexcept {
   if (wait_ == 0) {
     out = sample;
     return true;
@@ -34,20 +34,20 @@ bool SampleHold::push(const Sample& sample, Guard& guard, Sample& out) noexcept 
   return true;
 }
 
-bool SampleHold::drain(Guard& guard, Sample& out) noexcept {
+bool JudgementDelay::drain(Guard& guard, Sample& out) noexcept {
   if (count_ == 0) return false;
   mark_all(guard);
   take_oldest(guard, out);
   return true;
 }
 
-void SampleHold::mark_all(Guard& guard) noexcept {
+void JudgementDelay::mark_all(Guard& guard) noexcept {
   WrongSample wrong;
   while (guard.next_wrong_sample(wrong)) mark(wrong);
 }
 
 // Ticks rise with the place in the ring.
-void SampleHold::mark(const WrongSample& wrong) noexcept {
+void JudgementDelay::mark(const WrongSample& wrong) noexcept {
   std::size_t newer = 0;  // ages: at `newer` or before it is the tick, if it waits at all
   std::size_t older = count_;
   while (newer < older) {
@@ -63,7 +63,7 @@ void SampleHold::mark(const WrongSample& wrong) noexcept {
   held(newer).wrong = static_cast<std::uint8_t>(wrong_before | 1U << wrong.channel);
 }
 
-void SampleHold::take_oldest(const Guard& guard, Sample& out) noexcept {
+void JudgementDelay::take_oldest(const Guard& guard, Sample& out) noexcept {
   const std::size_t age = count_ - 1;
   Held& oldest = held(age);
   bool spoilt = passes(guard.spoilt(oldest.sample.tick, oldest.sample.tick));
@@ -78,7 +78,7 @@ void SampleHold::take_oldest(const Guard& guard, Sample& out) noexcept {
   gone_ = std::min(gone_ + 1, kNeighbours);
 }
 
-bool SampleHold::replace(std::size_t age, std::size_t channel) noexcept {
+bool JudgementDelay::replace(std::size_t age, std::size_t channel) noexcept {
   if (gone_ < kNeighbours || age < kNeighbours) return false;
   Sample& sample = held(age).sample;
   for (std::size_t i = 1; i <= kNeighbours; ++i) {

@@ -15,7 +15,7 @@ namespace dampline {
 /// the zero, a burst of noise, samples that were lost or repeated and not counted), samples come
 /// out as spoilt. Lasting faults spoil nothing here: nothing would be left. One sample out for each
 /// one in, so a call costs a bounded number of operations, gap or not.
-class SampleHold {
+class JudgementDelay {
  public:
   static constexpr std::size_t kMost = 10000;  ///< samples that can wait
   struct Counts {
@@ -24,7 +24,8 @@ class SampleHold {
   };
 
   /// `samples`: how many wait, at most kMost; 0 passes all on as they are.
-  explicit SampleHold(std::size_t samples) noexcept : wait_{samples < kMost ? samples : kMost} {}
+  explicit JudgementDelay(std::size_t samples) noexcept
+      : wait_{samples < kMost ? samples : kMost} {}
 
   /// Takes what the guard has just seen. True when it wrote the sample that has waited long enough.
   bool push(const Sample& sample, Guard& guard, Sample& out) noexcept;
