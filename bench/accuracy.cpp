@@ -59,7 +59,7 @@ struct Row {
   Spread velocity, deflection;
 };
 
-Row run(const AccuracyCase& c, const Seeds& seeds, const IdentifierConfig& config = {}) {
+Row run(const AccuracyCase& c, const Seeds& seeds, const EstimatorConfig& config = {}) {
   Row row;
   for (int i = 0; i < seeds.count; ++i) {
     const RunErrors r = run_case(c, seeds.first + static_cast<std::uint64_t>(i), kLengthsS, config);
@@ -112,7 +112,7 @@ void coverage_table(const Seeds& seeds, const std::vector<int>& inside) {
   }
 }
 
-using Change = std::function<void(AccuracyCase&, IdentifierConfig&)>;
+using Change = std::function<void(AccuracyCase&, EstimatorConfig&)>;
 
 void changed_table(const std::string& title, double coulomb_bound, const Seeds& seeds,
                    const Change& change, const char* only = "") {
@@ -122,7 +122,7 @@ void changed_table(const std::string& title, double coulomb_bound, const Seeds& 
       title);
   for (AccuracyCase c : standard_cases()) {
     if (!c.name.ends_with(only)) continue;
-    IdentifierConfig config;
+    EstimatorConfig config;
     change(c, config);
     const Row row = run(c, seeds, config);
     const Cell& cell = row.at.back();
@@ -154,28 +154,27 @@ void asymmetry_table(const Seeds& seeds) {
 
 void harder_tables(const Seeds& seeds) {
   changed_table("Standstill of 60 s in the middle, 300 s:", 0.004, seeds,
-                [](AccuracyCase& c, IdentifierConfig&) {
+                [](AccuracyCase& c, EstimatorConfig&) {
                   c.simulation.speed.standstills[0] = {120.0, 180.0};
                 });
   changed_table(
       "Speed changes from 80 to 60 km/h in the middle, 300 s:", 0.004, seeds,
-      [](AccuracyCase& c, IdentifierConfig&) {
+      [](AccuracyCase& c, EstimatorConfig&) {
         c.simulation.speed.change_time_s = 150.0;
         c.simulation.speed.changed_speed_mps = 60.0 / 3.6;
       },
       "80");
   changed_table("Five times the sensor noise, 300 s:", 0.03, seeds,
-                [](AccuracyCase& c, IdentifierConfig&) { c.simulation.sensors.noise_mps2 = 0.1; });
-  changed_table(
-      "Four times the friction, 300 s:", 0.04, seeds,
-      [](AccuracyCase& c, IdentifierConfig&) { c.simulation.truck.friction_scale = 4.0; });
+                [](AccuracyCase& c, EstimatorConfig&) { c.simulation.sensors.noise_mps2 = 0.1; });
+  changed_table("Four times the friction, 300 s:", 0.04, seeds,
+                [](AccuracyCase& c, EstimatorConfig&) { c.simulation.truck.friction_scale = 4.0; });
 }
 
 void choice_tables(const Seeds& seeds) {
   changed_table("Standard, 300 s, without the lift of fast velocity:", 0.004, seeds,
-                [](AccuracyCase&, IdentifierConfig& i) { i.anti_alias.corner_hz = 0.0; });
+                [](AccuracyCase&, EstimatorConfig& i) { i.anti_alias.corner_hz = 0.0; });
   changed_table("Standard, 300 s, velocity corner 1.0 Hz:", 0.004, seeds,
-                [](AccuracyCase&, IdentifierConfig& i) { i.velocity_corner_hz = 1.0; });
+                [](AccuracyCase&, EstimatorConfig& i) { i.velocity_corner_hz = 1.0; });
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
@@ -123,13 +123,13 @@ class RelativeError {
 
 /// Simulates one record of the longest length and identifies it, with a look at each length.
 inline RunErrors run_case(const AccuracyCase& c, std::uint64_t seed,
-                          const std::vector<double>& lengths_s, const IdentifierConfig& base = {}) {
+                          const std::vector<double>& lengths_s, const EstimatorConfig& base = {}) {
   sim::SimulationConfig config = c.simulation;
   config.seed = seed;
   sim::Simulation simulation{config};
-  IdentifierConfig identifier_config = base;
+  EstimatorConfig identifier_config = base;
   identifier_config.moving_mass_kg = config.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   constexpr std::size_t kHistory = 4096;
   std::vector<sim::Truth> truth(kHistory);
   Visits visits;

@@ -78,7 +78,7 @@ void after(benchmark::State& state, Answer answer) {
 }
 
 void snapshot(benchmark::State& state) {
-  after(state, [](auto& s, Identifier& identifier, auto&, auto&, auto&) {
+  after(state, [](auto& s, Estimator& identifier, auto&, auto&, auto&) {
     while (s.KeepRunning()) benchmark::DoNotOptimize(identifier.snapshot());
   });
 }

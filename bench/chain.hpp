@@ -5,9 +5,9 @@
 #include <type_traits>
 
 #include "app/identify/can_channels.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/effect/diagnosis.hpp"
 #include "dampline/guard/guard.hpp"
-#include "dampline/identifier.hpp"
 #include "dampline/methods.hpp"
 #include "dampline/phase/phase_view.hpp"
 #include "dampline/sample/assembler.hpp"
@@ -24,15 +24,15 @@ enum class Parts : std::uint8_t {
 /// The project's own sensors.
 inline AssemblerConfig frame_config() { return app::can_channels(app::Config{}); }
 
-inline IdentifierConfig chain_config() {
-  IdentifierConfig config;
+inline EstimatorConfig chain_config() {
+  EstimatorConfig config;
   config.screen = app::screen_of(frame_config().channels);
   config.screen.sample_rate_hz = config.sample_rate_hz;
   return config;
 }
 
 inline GuardConfig guard_config() {
-  const IdentifierConfig core = chain_config();
+  const EstimatorConfig core = chain_config();
   GuardConfig config;
   config.step_mps2 = core.screen.step_mps2;
   return config;
@@ -59,7 +59,7 @@ class Chain {
     if constexpr (kParts >= Parts::kDensities) methods_.update(result);
     if constexpr (kParts == Parts::kExplain) diagnosis_.update(sample, result);
   }
-  [[nodiscard]] Identifier& identifier() noexcept { return identifier_; }
+  [[nodiscard]] Estimator& identifier() noexcept { return identifier_; }
 
  private:
   struct None {
@@ -70,7 +70,7 @@ class Chain {
   using If = std::conditional_t<kPresent, T, None>;
   static constexpr bool kCompanions = kParts >= Parts::kIdentify;
 
-  Chain(const AssemblerConfig& frames, const IdentifierConfig& core, const GuardConfig& guard)
+  Chain(const AssemblerConfig& frames, const EstimatorConfig& core, const GuardConfig& guard)
       : assembler_{frames},
         identifier_{core},
         guard_{guard},
@@ -79,7 +79,7 @@ class Chain {
         diagnosis_{core} {}
 
   SampleAssembler assembler_;
-  Identifier identifier_;
+  Estimator identifier_;
   If<kCompanions, Guard> guard_;
   If<kCompanions, PhaseView> phase_;
   If<(kParts >= Parts::kDensities), Methods> methods_;

@@ -108,10 +108,10 @@ inline app::Config config_of(const GuardRecord& record) {
 
 inline Decision decide(const GuardRecord& record) {
   const app::Config config = config_of(record);
-  IdentifierConfig core;
+  EstimatorConfig core;
   core.moving_mass_kg = config.car.moving_mass_kg;
   core.screen.step_mps2 = record.guard.step_mps2;
-  const auto identifier = std::make_unique<Identifier>(core);
+  const auto identifier = std::make_unique<Estimator>(core);
   const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
   app::FaultWatch watch{config, core};
   const auto use = [&](const Sample& sample) {

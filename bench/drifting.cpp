@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bench/guard_cases.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/guard/parameter_drift.hpp"
-#include "dampline/identifier.hpp"
 
 namespace {
 
@@ -63,16 +63,16 @@ std::vector<DriftCase> all_cases() {
 }
 
 ParameterDrift judge(const GuardRecord& record) {
-  IdentifierConfig config;
+  EstimatorConfig config;
   config.moving_mass_kg = record.simulation.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(config);
+  const auto identifier = std::make_unique<Estimator>(config);
   sim::Simulation simulation{record.simulation};
   const auto samples = static_cast<int>(record.length_s * sim::kSampleRateHz);
   for (int i = 0; i < samples; ++i) identifier->update(sim::to_sample(simulation.next()));
   identifier->finish();
   const auto statistics = std::make_unique<Statistics>();
   identifier->export_statistics(*statistics);
-  return find_parameter_drift(*statistics, Identifier::kBlockS);
+  return find_parameter_drift(*statistics, Estimator::kBlockS);
 }
 
 void run_case(const DriftCase& c, int each, std::uint64_t first_seed, bool verbose) {

@@ -174,8 +174,8 @@ void print_rate(const char* what, const Verdicts& verdicts) {
 
 /// Motion as it comes out of the identifier, over and over, after its ranges are learned.
 void print_cost() {
-  const IdentifierConfig config{};
-  const auto identifier = std::make_unique<Identifier>(config);
+  const EstimatorConfig config{};
+  const auto identifier = std::make_unique<Estimator>(config);
   sim::Simulation simulation{simulation_of({}, 1)};
   std::vector<Motion> motion;
   while (motion.size() < std::size_t{60} * sim::kSampleRateHz) {

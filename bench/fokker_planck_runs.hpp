@@ -105,8 +105,8 @@ inline sim::SimulationConfig simulation_of(const Ride& ride, std::uint64_t seed)
 /// The motion that the shipped identifier finds in the three accelerations.
 inline std::unique_ptr<Methods> run(const Ride& ride, std::uint64_t seed) {
   const sim::SimulationConfig config = simulation_of(ride, seed);
-  const IdentifierConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const EstimatorConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   auto methods = std::make_unique<Methods>(identifier_config);
   sim::Simulation simulation{config};
   const auto samples = std::llround(ride.seconds * sim::kSampleRateHz);

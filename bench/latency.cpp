@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline {
@@ -39,15 +39,15 @@ class Feed {
   std::int64_t tick_{0};
 };
 
-IdentifierConfig config_with(Memory memory) {
-  IdentifierConfig config;
+EstimatorConfig config_with(Memory memory) {
+  EstimatorConfig config;
   config.memory = memory;
   config.memory_s = memory == Memory::kInfinite ? 0.0 : 120.0;
   return config;
 }
 
 void update(benchmark::State& state, Memory memory) {
-  const auto identifier = std::make_unique<Identifier>(config_with(memory));
+  const auto identifier = std::make_unique<Estimator>(config_with(memory));
   Feed feed;
   for (int i = 0; i < 90 * sim::kSampleRateHz; ++i) {
     static_cast<void>(identifier->update(feed.next()));
@@ -65,7 +65,7 @@ BENCHMARK_CAPTURE(update, window, Memory::kWindow);
 BENCHMARK_CAPTURE(update, forgetting, Memory::kForgetting);
 
 void snapshot(benchmark::State& state) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   Feed feed;
   for (int i = 0; i < state.range(0) * sim::kSampleRateHz; ++i) {
     static_cast<void>(identifier->update(feed.next()));

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "bench/guard_cases.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/guard/change_alarm.hpp"
 #include "dampline/guard/group_meter.hpp"
-#include "dampline/identifier.hpp"
 
 namespace {
 
@@ -44,8 +44,8 @@ double deviation(const std::vector<double>& logs) {
 
 Scatter measure(const GuardCondition& condition, std::uint64_t seed) {
   const GuardRecord record = clean_record(condition, seed);
-  const auto identifier = std::make_unique<Identifier>(
-      IdentifierConfig{.moving_mass_kg = record.simulation.truck.moving_mass_kg});
+  const auto identifier = std::make_unique<Estimator>(
+      EstimatorConfig{.moving_mass_kg = record.simulation.truck.moving_mass_kg});
   const auto total = std::make_unique<ScaleFactors>();
   sim::Simulation simulation{record.simulation};
   GroupMeter meter;

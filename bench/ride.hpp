@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two minutes of a laden ride over and over, as the benchmarks of the sample path take it: samples,
-// frames, and samples with what the Identifier makes of them. Ticks, times and counters go on.
+// frames, and samples with what the Estimator makes of them. Ticks, times and counters go on.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
@@ -89,7 +89,7 @@ class FrameFeed {
   Round<std::array<CanFrame, kChannels>> round_{recorded().frames};
 };
 
-/// A sample and what the Identifier returned for it.
+/// A sample and what the Estimator returned for it.
 struct Heard {
   Sample sample;
   UpdateResult result;
@@ -97,7 +97,7 @@ struct Heard {
 
 inline const std::vector<Heard>& heard() {
   static const std::vector<Heard> made = [] {
-    const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+    const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
     SampleFeed feed;
     for (std::int64_t i = 0; i < kRideTicks; ++i)
       static_cast<void>(identifier->update(feed.next()));

@@ -195,12 +195,12 @@ void trucks(const Limit& limit, nlohmann::json& out) {
 }
 
 void windows(nlohmann::json& out) {
-  fmt::print("\n| memory | ns per sample of Identifier::update |\n|--|--|\n");
+  fmt::print("\n| memory | ns per sample of Estimator::update |\n|--|--|\n");
   const auto measure = [&out](const char* name, Memory memory, double seconds) {
-    IdentifierConfig config = chain_config();
+    EstimatorConfig config = chain_config();
     config.memory = memory;
     if (memory != Memory::kInfinite) config.memory_s = seconds;
-    const auto identifier = std::make_unique<Identifier>(config);
+    const auto identifier = std::make_unique<Estimator>(config);
     SampleFeed feed;
     for (int i = 0; i < 60'000; ++i) static_cast<void>(identifier->update(feed.next()));
     const double ns = best_ns([&] {

@@ -13,7 +13,7 @@
 #include "app/identify/can_channels.hpp"
 #include "app/live/lateness.hpp"
 #include "bench/large_array.hpp"
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/presets.hpp"
@@ -28,10 +28,10 @@ constexpr std::int64_t kPeriodNs = 1'000'000'000 / 300;
 struct Truck {
   explicit Truck(std::size_t number)
       : assembler{app::can_channels({})},
-        identifier{IdentifierConfig{}},
+        identifier{EstimatorConfig{}},
         phase{static_cast<std::int64_t>(number) * 7919 % kRideTicks} {}
   SampleAssembler assembler;
-  Identifier identifier;
+  Estimator identifier;
   std::int64_t phase;  // so that not all blocks end at once
 };
 

@@ -66,7 +66,7 @@ void motion_integral(benchmark::State& state) {
   });
 }
 
-/// Lift, velocity and deflection of the relative motion, as the Identifier forms them.
+/// Lift, velocity and deflection of the relative motion, as the Estimator forms them.
 void motion(benchmark::State& state) {
   Fir<VelocityLift::kHalf> lift{VelocityLift{{}, 300.0}.taps()};
   DriftFreeIntegral velocity{300.0};
@@ -162,7 +162,7 @@ void effect_diagnosis(benchmark::State& state) {
 }
 
 void identifier(benchmark::State& state) {
-  const auto identifier = std::make_unique<Identifier>(chain_config());
+  const auto identifier = std::make_unique<Estimator>(chain_config());
   SampleFeed source;
   time_samples(state, 27000, [&] { benchmark::DoNotOptimize(identifier->update(source.next())); });
 }

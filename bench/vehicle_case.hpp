@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bench/spread.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/density/fokker_planck.hpp"
-#include "dampline/identifier.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 #include "sim_hw/vehicle.hpp"
@@ -82,9 +82,9 @@ inline Level level_of(const MethodResult& result) {
 /// Fokker-Planck forms, the stiffness is known, as in the paper.
 inline Found find_levels(const sim::SimulationConfig& config, double seconds) {
   const sim::TruckConfig& truck = config.truck;
-  IdentifierConfig identifier_config;
+  EstimatorConfig identifier_config;
   identifier_config.moving_mass_kg = truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   const auto densities = std::make_unique<FokkerPlanck>(FokkerPlanckConfig{});
   sim::Simulation simulation{config};
   const auto samples = std::llround(seconds * sim::kSampleRateHz);

@@ -73,7 +73,7 @@ class CloserLook {
 
   const Config& config_;
   const ExplainOptions& options_;
-  IdentifierConfig core_;
+  EstimatorConfig core_;
   effect::Explainer& explainer_;
   std::array<double, kChannels> noise_mps2_{};
 };

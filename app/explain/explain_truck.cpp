@@ -21,7 +21,7 @@ namespace {
 Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
                    Explained& out, effect::Explainer& explainer) {
   std::vector<PredictedRow>& rows = out.identified.evidence.prediction;
-  const IdentifierConfig core = identifier_config(config);
+  const EstimatorConfig core = identifier_config(config);
   const auto keep = [&](const EvidencePoint& p) {
     rows.push_back({number, p.time_s, p.measured_n, p.final_n, p.base_n,
                     std::numeric_limits<double>::quiet_NaN()});
@@ -42,7 +42,7 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
 }  // namespace
 
 Explained explain_truck(const Config& config, const ExplainOptions& options) {
-  const IdentifierConfig core = identifier_config(config);
+  const EstimatorConfig core = identifier_config(config);
   FrameNoise noise{core.sample_rate_hz, core.anti_alias};
   const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
     noise.take(sample);

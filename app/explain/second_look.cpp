@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastTurn = 0.05;  // of the deflection's rms: smaller ones are noise
 constexpr double kLawReach = 2.5;    // of the velocity's rms
 
-EvidenceScale scale_of(const IdentifierConfig& core, const TruckPass& first) {
+EvidenceScale scale_of(const EstimatorConfig& core, const TruckPass& first) {
   const double deflection_m = first.diagnosis->deflection_rms_m();
   return {deflection_m, first.diagnosis->velocity_rms_mps(), kLeastTurn * deflection_m,
           core.sample_rate_hz, first.run->time_s()};
@@ -23,7 +23,7 @@ EvidenceScale scale_of(const IdentifierConfig& core, const TruckPass& first) {
 /// One of the declared law; one that has friction's memory, too, or else one with other noise.
 using Twins = std::array<std::unique_ptr<TwinPass>, 2>;
 
-Twins twins_of(const IdentifierConfig& core, const TwinConfig& declared,
+Twins twins_of(const EstimatorConfig& core, const TwinConfig& declared,
                const effect::Explanation& e) {
   Twins out;
   if (!is_physical(declared)) return out;
@@ -35,7 +35,7 @@ Twins twins_of(const IdentifierConfig& core, const TwinConfig& declared,
 }
 
 /// The record again, with the twins.
-void read_again(const Config& config, const ExplainOptions& options, const IdentifierConfig& core,
+void read_again(const Config& config, const ExplainOptions& options, const EstimatorConfig& core,
                 const TruckPass& first, const Twins& twins, Explained& out) {
   EvidenceMeter meter{scale_of(core, first)};
   TruckPoints points{core.sample_rate_hz,
@@ -69,7 +69,7 @@ bool can_read_again(const std::string& path) {
 void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
   if (!can_read_again(options.source.path)) return;
-  IdentifierConfig core = identifier_config(config);
+  EstimatorConfig core = identifier_config(config);
   core.screen = first.feed->screen();
   const TwinConfig declared =
       twin_config(core, out.explanation, noise_of_record(first, noise, core.screen.step_mps2));

@@ -29,7 +29,7 @@ SourceKind truck_source(const Config& config, const SourceOptions& source) {
 TruckPass pass_of(const Config& config, const SourceOptions& source,
                   const TruckPassOptions& options) {
   TruckPass pass;
-  IdentifierConfig core = identifier_config(config);
+  EstimatorConfig core = identifier_config(config);
   pass.feed = open_feed(config, source, truck_source(config, source));
   core.screen = pass.feed->screen();
   pass.run = std::make_unique<TruckRun>(config, core.screen);
@@ -39,12 +39,12 @@ TruckPass pass_of(const Config& config, const SourceOptions& source,
     diagnosis.update(sample, result);
     if (options.watch) options.watch(sample, result, diagnosis);
   };
-  std::unique_ptr<Identifier> second;
+  std::unique_ptr<Estimator> second;
   Alignment alignment{options.lateness, core.sample_rate_hz};
   if (options.lateness.late_s == 0.0) {
     pass.run->watch(take);
   } else {
-    second = std::make_unique<Identifier>(core);
+    second = std::make_unique<Estimator>(core);
     pass.run->watch([&](const Sample& sample, const UpdateResult&) {
       const auto aligned = alignment.next(sample);
       if (aligned) take(*aligned, second->update(*aligned));

@@ -35,7 +35,7 @@ std::array<double, kChannels> noise_of_record(const TruckPass& first, const Fram
   return noise_of(seen, step_mps2);
 }
 
-TwinConfig twin_config(const IdentifierConfig& core, const effect::Explanation& e,
+TwinConfig twin_config(const EstimatorConfig& core, const effect::Explanation& e,
                        const std::array<double, kChannels>& noise_mps2) {
   TwinConfig out;
   out.sample_rate_hz = core.sample_rate_hz;

@@ -17,7 +17,7 @@ namespace dampline::app {
 
 /// The declared law beside the effects that were found, per unit of mass. With a mass on the frame
 /// every coefficient of the fit is of all mass, and friction and spring are of the frame's own.
-[[nodiscard]] TwinConfig twin_config(const IdentifierConfig& core, const effect::Explanation& e,
+[[nodiscard]] TwinConfig twin_config(const EstimatorConfig& core, const effect::Explanation& e,
                                      const std::array<double, kChannels>& noise_mps2);
 
 /// The same with friction's memory, where some was found: it has no leap that an error of the
@@ -29,10 +29,10 @@ namespace dampline::app {
 /// The twin through the same estimator.
 class TwinPass {
  public:
-  TwinPass(const IdentifierConfig& core, const TwinConfig& config, const effect::Grids& grids)
+  TwinPass(const EstimatorConfig& core, const TwinConfig& config, const effect::Grids& grids)
       : remembers_{config.memory.force_mps2 > 0.0},
         twin_{config},
-        identifier_{std::make_unique<Identifier>(core)},
+        identifier_{std::make_unique<Estimator>(core)},
         diagnosis_{std::make_unique<effect::Diagnosis>(core, grids)} {}
   void take(const Sample& sample) {
     const auto twin = twin_.next(sample);
@@ -48,7 +48,7 @@ class TwinPass {
  private:
   bool remembers_;
   Twin twin_;
-  std::unique_ptr<Identifier> identifier_;
+  std::unique_ptr<Estimator> identifier_;
   std::unique_ptr<effect::Diagnosis> diagnosis_;
 };
 

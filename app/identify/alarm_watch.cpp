@@ -7,11 +7,10 @@
 
 namespace dampline::app {
 
-AlarmWatch::AlarmWatch(const IdentifierConfig& config)
+AlarmWatch::AlarmWatch(const EstimatorConfig& config)
     : active_{config.memory == Memory::kInfinite}, total_{std::make_unique<ScaleFactors>()} {}
 
-void AlarmWatch::take(const BlockReport& block, std::int64_t tick,
-                      Identifier& identifier) noexcept {
+void AlarmWatch::take(const BlockReport& block, std::int64_t tick, Estimator& identifier) noexcept {
   const bool has_rows = block.status == BlockStatus::kUsed || block.status == BlockStatus::kPartial;
   if (!active_ || !has_rows || ++blocks_ < meter_.due()) return;
   identifier.export_total(*total_);

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "app/identify/truck_result.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/guard/change_alarm.hpp"
 #include "dampline/guard/group_meter.hpp"
-#include "dampline/identifier.hpp"
 
 namespace dampline::app {
 
@@ -32,9 +32,9 @@ void describe_alarms(const AlarmView& view, const TruckRecord& record, RunResult
 /// construction.
 class AlarmWatch {
  public:
-  explicit AlarmWatch(const IdentifierConfig& config);
+  explicit AlarmWatch(const EstimatorConfig& config);
   /// After each block that the identifier has closed; `tick` is now.
-  void take(const BlockReport& block, std::int64_t tick, Identifier& identifier) noexcept;
+  void take(const BlockReport& block, std::int64_t tick, Estimator& identifier) noexcept;
   [[nodiscard]] const AlarmView& view() const noexcept { return view_; }
 
  private:

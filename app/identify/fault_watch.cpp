@@ -19,7 +19,7 @@ Leading leading_of(const std::string& word) {
   return word == "wheelset2" ? Leading::kWheelset2 : Leading::kUnknown;
 }
 
-GuardConfig guard_config(const Config& config, const IdentifierConfig& core) {
+GuardConfig guard_config(const Config& config, const EstimatorConfig& core) {
   GuardConfig out;
   out.sample_rate_hz = core.sample_rate_hz;
   out.step_mps2 = core.screen.step_mps2;
@@ -84,7 +84,7 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   out.samples_spoilt = view.held.spoilt;
 }
 
-FaultWatch::FaultWatch(const Config& config, const IdentifierConfig& core)
+FaultWatch::FaultWatch(const Config& config, const EstimatorConfig& core)
     : nominal_hz_{core.sample_rate_hz},
       wait_s_{config.guards.wait_s},
       guard_{std::make_unique<Guard>(guard_config(config, core))},
@@ -105,7 +105,7 @@ void FaultWatch::finish(const TruckRecord& record, const Statistics& statistics,
   describe_faults(view(), record, nominal_hz_, out);
   for (std::size_t i = 0; i < out.list.size(); ++i)
     out.list[i].spans = spoilt_spans(*guard_, guard_->faults()[i], nominal_hz_, record);
-  const ParameterDrift drift = find_parameter_drift(statistics, Identifier::kBlockS);
+  const ParameterDrift drift = find_parameter_drift(statistics, Estimator::kBlockS);
   if (drift.found) {
     out.drift = DriftFinding{name_of(drift.parameter),
                              drift.step,

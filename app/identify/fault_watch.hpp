@@ -6,10 +6,11 @@
 
 #include "app/config/config.hpp"
 #include "app/identify/truck_result.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/guard/guard.hpp"
 #include "dampline/guard/judgement_delay.hpp"
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace dampline::app {
 
@@ -28,9 +29,9 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
 /// The guards before an identification. take() does not allocate.
 class FaultWatch {
  public:
-  /// Precondition: Identifier::check(core).ok(). Throws UsageError naming the key that the guards
+  /// Precondition: Estimator::check(core).ok(). Throws UsageError naming the key that the guards
   /// cannot use.
-  FaultWatch(const Config& config, const IdentifierConfig& core);
+  FaultWatch(const Config& config, const EstimatorConfig& core);
   /// True when it wrote the sample whose turn it is: an earlier one, replaced or marked as spoilt
   /// where the guards want that.
   bool take(const Sample& sample, Sample& out) noexcept {

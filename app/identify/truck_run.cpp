@@ -51,15 +51,15 @@ TruckRecord record_of(const TruckView& view, const MeasuredRate& rate, double no
           nominal_hz * correction.ratio,        view.first_tick, view.newest_tick};
 }
 
-IdentifierConfig with_screen(IdentifierConfig core, const ScreenConfig& screen) {
+EstimatorConfig with_screen(EstimatorConfig core, const ScreenConfig& screen) {
   core.screen = screen;
   return core;
 }
 
 }  // namespace
 
-IdentifierConfig identifier_config(const Config& config) {
-  IdentifierConfig core;
+EstimatorConfig identifier_config(const Config& config) {
+  EstimatorConfig core;
   core.sample_rate_hz = truck_rate_hz(config.input);
   core.moving_mass_kg = config.car.moving_mass_kg;
   core.velocity_corner_hz = config.model.velocity_corner_hz.value_or(0.0);
@@ -75,7 +75,7 @@ IdentifierConfig identifier_config(const Config& config) {
           fmt::format("[model] base: \"{}\" cannot be identified from a truck's "
                       "accelerations yet; \"coulomb\" and \"viscous\" can",
                       effect)};
-  if (!Identifier::check(core).ok())
+  if (!Estimator::check(core).ok())
     throw UsageError{
         fmt::format("[input] sample_rate_hz: found {}, expected at least 150 for a truck's "
                     "accelerations (with [model] and [estimate] in their ranges)",
@@ -95,10 +95,10 @@ DataFaults faults_of(const TruckView& view, double nominal_hz) {
 TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
     : core_{with_screen(identifier_config(config), screen)},
       config_{config},
-      identifier_{std::make_unique<Identifier>(core_)},
+      identifier_{std::make_unique<Estimator>(core_)},
       methods_{std::make_unique<Methods>(core_)},
       phase_{std::make_unique<PhaseView>(PhaseViewConfig{.sample_rate_hz = core_.sample_rate_hz})},
-      block_ticks_{Identifier::kBlockS * core_.sample_rate_hz},
+      block_ticks_{Estimator::kBlockS * core_.sample_rate_hz},
       history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
       excerpt_{core_.sample_rate_hz},
       faults_{config, core_},

@@ -16,7 +16,7 @@
 #include "app/identify/motion_excerpt.hpp"
 #include "app/identify/rate_correction.hpp"
 #include "app/run/result.hpp"
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/methods.hpp"
 #include "dampline/phase/phase_view.hpp"
 
@@ -24,7 +24,7 @@ namespace dampline::app {
 
 /// The core's settings from a configuration. Throws UsageError naming the key that a truck record
 /// cannot use.
-[[nodiscard]] IdentifierConfig identifier_config(const Config& config);
+[[nodiscard]] EstimatorConfig identifier_config(const Config& config);
 
 /// What is known at one moment of a run, in the core's own time. Plain: it is handed between
 /// threads.
@@ -91,9 +91,9 @@ class TruckRun {
   }
   [[noreturn]] void fail_unusable(const Snapshot& snapshot, const std::string& source) const;
 
-  IdentifierConfig core_;
+  EstimatorConfig core_;
   Config config_;
-  std::unique_ptr<Identifier> identifier_;
+  std::unique_ptr<Estimator> identifier_;
   std::unique_ptr<Methods> methods_;
   std::unique_ptr<PhaseView> phase_;
   double block_ticks_;

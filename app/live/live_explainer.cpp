@@ -19,7 +19,7 @@ constexpr int kNice = 10;  // the acquisition and the writer come first
 
 }  // namespace
 
-LiveExplainer::LiveExplainer(const Config& config, const IdentifierConfig& core, TruckRun& run)
+LiveExplainer::LiveExplainer(const Config& config, const EstimatorConfig& core, TruckRun& run)
     : whole_{config},
       config_{explainer_config(config)},
       run_{run},

@@ -20,7 +20,7 @@ namespace dampline::app {
 class LiveExplainer {
  public:
   /// Watches `run` from now on, which outlives it. Nothing is allocated per sample.
-  LiveExplainer(const Config& config, const IdentifierConfig& core, TruckRun& run);
+  LiveExplainer(const Config& config, const EstimatorConfig& core, TruckRun& run);
   LiveExplainer(const LiveExplainer&) = delete;
   LiveExplainer& operator=(const LiveExplainer&) = delete;
   ~LiveExplainer();

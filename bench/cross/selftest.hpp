@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace dampline::cross {
 
 /// Lies in static storage, as on a target without a heap.
 struct SelfTest {
-  Identifier identifier{IdentifierConfig{}};
+  Estimator identifier{EstimatorConfig{}};
   Snapshot snapshot{};
 };
 

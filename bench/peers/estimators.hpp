@@ -49,7 +49,7 @@ class Ours {
   mutable RecursiveEstimate<N> estimate_;  // rows wait in it until somebody asks
 };
 
-/// The same, fed as the Identifier feeds it: rows of a standstill are left out, and with them the
+/// The same, fed as the Estimator feeds it: rows of a standstill are left out, and with them the
 /// forgetting.
 template <int N>
 class OursGated : public Ours<N> {

@@ -182,7 +182,7 @@ int run(int argc, char** argv) {
   }
   Competition competition{hours};
   competition.enter_whole_chain();
-  competition.enter<OursGated<kUnknowns>>("dampline, standstill left out as the Identifier does");
+  competition.enter<OursGated<kUnknowns>>("dampline, standstill left out as the Estimator does");
   competition.enter<Ours<kUnknowns>>("dampline, given every row");
   competition.enter<EigenCovariance<kUnknowns>>("Eigen, covariance recursion");
   competition.enter<EigenSymmetric<kUnknowns>>("Eigen, one triangle of the covariance");
@@ -198,7 +198,7 @@ int run(int argc, char** argv) {
 #endif
   competition.run();
   fmt::print(
-      "300 Hz. Identifier: the larger relative error of friction and stiffness of a simulated car. "
+      "300 Hz. Estimator: the larger relative error of friction and stiffness of a simulated car. "
       "Others: {} unknowns, forgetting {}, the largest error of a parameter\n\n"
       "| estimator | after 5 min | after {:.1f} h of running | 5 min after 15 min of "
       "standstill | 5 min after 8 h of standstill |\n|--|--|--|--|--|\n",

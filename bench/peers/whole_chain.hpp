@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "bench/peers/outcome.hpp"
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
@@ -18,8 +18,8 @@ class WholeChain {
  public:
   static constexpr std::size_t kMemories = 3;
   static constexpr std::array<const char*, kMemories> kNames{
-      "dampline, Identifier, all of the record", "dampline, Identifier, window of 300 s",
-      "dampline, Identifier, forgetting, 300 s"};
+      "dampline, Estimator, all of the record", "dampline, Estimator, window of 300 s",
+      "dampline, Estimator, forgetting, 300 s"};
   using Outcomes = std::array<Outcome, kMemories>;
 
   /// Good excitation, with a look after `first_s`.
@@ -53,11 +53,11 @@ class WholeChain {
 
   explicit WholeChain(const sim::SimulationConfig& config) : truck_{config.truck}, sim_{config} {
     for (std::size_t m = 0; m < kMemories; ++m) {
-      IdentifierConfig identifier;
+      EstimatorConfig identifier;
       identifier.moving_mass_kg = truck_.moving_mass_kg;
       identifier.memory = static_cast<Memory>(m);
       identifier.memory_s = identifier.memory == Memory::kInfinite ? 0.0 : 300.0;
-      identifiers_[m] = std::make_unique<Identifier>(identifier);
+      identifiers_[m] = std::make_unique<Estimator>(identifier);
     }
   }
 
@@ -97,7 +97,7 @@ class WholeChain {
 
   sim::TruckConfig truck_;
   sim::Simulation sim_;
-  std::array<std::unique_ptr<Identifier>, kMemories> identifiers_;
+  std::array<std::unique_ptr<Estimator>, kMemories> identifiers_;
   std::array<bool, kMemories> known_{};  // there was an estimate before
   std::array<double, kMemories> nan_after_s_{-1.0, -1.0, -1.0};
   std::int64_t taken_{0};

@@ -2,19 +2,19 @@
 #pragma once
 #include <algorithm>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/density/fokker_planck.hpp"
-#include "dampline/identifier.hpp"
 
 namespace dampline {
 
-/// The methods beside the wavelet windows, fed by the motion that an Identifier gives. A companion
+/// The methods beside the wavelet windows, fed by the motion that an Estimator gives. A companion
 /// of fixed size; update() costs a bounded number of operations and allocates nothing.
 class Methods {
  public:
   /// The same rate, nodes, filter and memory as the identifier's. A sliding window becomes
   /// forgetting of the same mean age.
   [[nodiscard]] static FokkerPlanckConfig fokker_planck_config(
-      const IdentifierConfig& config) noexcept {
+      const EstimatorConfig& config) noexcept {
     FokkerPlanckConfig out;
     out.sample_rate_hz = config.sample_rate_hz;
     out.curve_nodes_mps = config.curve_nodes_mps;
@@ -24,11 +24,11 @@ class Methods {
     return out;
   }
 
-  /// Precondition: Identifier::check(config).ok().
-  explicit Methods(const IdentifierConfig& config) noexcept
+  /// Precondition: Estimator::check(config).ok().
+  explicit Methods(const EstimatorConfig& config) noexcept
       : fokker_planck_{fokker_planck_config(config)} {}
 
-  /// Takes what Identifier::update() returned.
+  /// Takes what Estimator::update() returned.
   void update(const UpdateResult& result) noexcept {
     if (result.has_motion) fokker_planck_.update(result.motion);
   }

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "app/error.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
-#include "dampline/identifier.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
@@ -111,8 +111,8 @@ TEST(StateFile, RefusesBytesAfterTheEnd) {
 TEST(StateFile, TwoHalvesMergeToTheWhole) {
   constexpr int kSamples = 36000;
   sim::Simulation simulation{sim::SimulationConfig{}};
-  const auto whole = std::make_unique<Identifier>(IdentifierConfig{});
-  const auto parts = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto whole = std::make_unique<Estimator>(EstimatorConfig{});
+  const auto parts = std::make_unique<Estimator>(EstimatorConfig{});
   auto statistics = std::make_unique<Statistics>();
   std::string first;
   for (int i = 0; i < kSamples; ++i) {
@@ -134,7 +134,7 @@ TEST(StateFile, TwoHalvesMergeToTheWhole) {
   decode_state(second, "second.dls", *statistics);
   merge_state(*merged, *statistics, "second.dls");
   whole->export_statistics(*statistics);
-  const SummaryConfig config{.moving_mass_kg = IdentifierConfig{}.moving_mass_kg};
+  const SummaryConfig config{.moving_mass_kg = EstimatorConfig{}.moving_mass_kg};
   const Snapshot from_parts = summarise(*merged, config);
   const Snapshot from_whole = summarise(*statistics, config);
   EXPECT_EQ(from_parts.counts.blocks, from_whole.counts.blocks);

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
-#include "dampline/identifier.hpp"
 
 namespace dampline {
 namespace {

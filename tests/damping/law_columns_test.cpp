@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "tests/steps.hpp"
 
 namespace dampline {

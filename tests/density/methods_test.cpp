@@ -13,8 +13,8 @@ namespace dampline {
 namespace {
 
 FokkerPlanckEstimates track_run(const sim::SimulationConfig& config, double length_s) {
-  const IdentifierConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const EstimatorConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   const auto methods = std::make_unique<Methods>(identifier_config);
   sim::Simulation simulation{config};
   for (int i = 0; i < static_cast<int>(length_s * sim::kSampleRateHz); ++i) {
@@ -58,8 +58,8 @@ INSTANTIATE_TEST_SUITE_P(Conditions, OnTrack,
 TEST(Methods, LeavesStandstillOut) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 302);
   config.speed.standstills[0] = {70.0, 100.0};
-  const IdentifierConfig identifier_config{};
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const EstimatorConfig identifier_config{};
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   const auto methods = std::make_unique<Methods>(identifier_config);
   sim::Simulation simulation{config};
   for (int i = 0; i < 120 * sim::kSampleRateHz; ++i) {
@@ -70,7 +70,7 @@ TEST(Methods, LeavesStandstillOut) {
 }
 
 TEST(Methods, TakesMemoryAndNodesFromTheIdentifier) {
-  IdentifierConfig config{.memory = Memory::kWindow, .memory_s = 120.0};
+  EstimatorConfig config{.memory = Memory::kWindow, .memory_s = 120.0};
   config.anti_alias.corner_hz = 50.0;
   config.curve_nodes_mps[0] = 2.0e-3;
   const FokkerPlanckConfig out = Methods::fokker_planck_config(config);

@@ -25,9 +25,9 @@ Record explained(const std::string& effect, std::uint64_t seed, double length_s 
     EXPECT_FALSE(wrong) << wrong.value_or("");
   }
   sim::Simulation simulation{config};
-  IdentifierConfig core;
+  EstimatorConfig core;
   core.moving_mass_kg = config.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(core);
+  const auto identifier = std::make_unique<Estimator>(core);
   Record out{std::make_unique<Diagnosis>(core, Grids{.scale_m = scale_m}), {}};
   for (int n = 0; n < static_cast<int>(length_s * sim::kSampleRateHz); ++n) {
     const Sample sample = sim::to_sample(simulation.next());

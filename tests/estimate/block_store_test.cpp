@@ -168,7 +168,7 @@ TEST(BlockStore, SpreadsTheWorkOverManySteps) {
   EXPECT_EQ(total->blocks, 2U);
 }
 
-/// Rows and closings as the Identifier gives them, sample by sample: rows of short windows come
+/// Rows and closings as the Estimator gives them, sample by sample: rows of short windows come
 /// earlier than those of long ones, a block closes when its longest window is complete.
 class BlockStoreInTime : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Rates, BlockStoreInTime, testing::Values(150.0, 200.0, 300.0, 400.0));

@@ -10,7 +10,7 @@
 namespace dampline {
 namespace {
 
-/// Statistics of blocks first...last - 1, by a store, as the Identifier exports them.
+/// Statistics of blocks first...last - 1, by a store, as the Estimator exports them.
 std::unique_ptr<Statistics> statistics_of(const std::vector<PlainRow>& rows, std::int64_t first,
                                           std::int64_t last) {
   const auto store = std::make_unique<BlockStore>(BlockStore::Config{});

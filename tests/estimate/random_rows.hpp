@@ -49,7 +49,7 @@ inline double relative_difference(const RowGram& a, const RowGram& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-/// Feeds a store as the Identifier does: rows, then close, with `steps` steps after each block.
+/// Feeds a store as the Estimator does: rows, then close, with `steps` steps after each block.
 inline void feed(BlockStore& store, const std::vector<PlainRow>& rows, int steps) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     store.absorb(rows[i].block, rows[i].scale, rows[i].row);

@@ -192,9 +192,9 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   }
   config.sensors.noise_mps2 *= noise_scale;
   sim::Simulation simulation{config};
-  IdentifierConfig core;
+  EstimatorConfig core;
   core.moving_mass_kg = config.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(core);
+  const auto identifier = std::make_unique<Estimator>(core);
   const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
   FrameNoise noise{kRateHz, core.anti_alias};
   std::vector<Sample> samples;
@@ -223,7 +223,7 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   for (auto& seen : twins) {
     ++settings.seed;
     Twin twin{settings};
-    const auto again = std::make_unique<Identifier>(core);
+    const auto again = std::make_unique<Estimator>(core);
     seen = std::make_unique<effect::Diagnosis>(core, diagnosis->grids());
     for (const Sample& s : samples) {
       const auto t = twin.next(s);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/guard/group_meter.hpp"
-#include "dampline/identifier.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/random.hpp"
 #include "sim_hw/simulation.hpp"
@@ -92,7 +92,7 @@ TEST(GroupMeter, MeasuresTheNewestBlocksAlone) {
   config.truck.drift.start_s = 450.0;
   config.truck.drift.friction_factor = 0.8;
   sim::Simulation simulation{config};
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   const auto total = std::make_unique<ScaleFactors>();
   GroupMeter meter;
   GroupMeter::Group group;

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/guard/impulse_power.hpp"
-#include "dampline/identifier.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/random.hpp"
 #include "sim_hw/record_faults.hpp"
@@ -123,7 +123,7 @@ TEST(JudgementDelay, MakesAnEstimateFromARecordWithSpikes) {
   faults.spike_mps2 = 40.0;
   faults.record_s = 120.0;
   const auto coulomb_n = [](const std::vector<Sample>& samples) {
-    const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+    const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
     for (const Sample& sample : samples) identifier->update(sample);
     identifier->finish();
     return identifier->snapshot().coulomb_n.value;
@@ -134,13 +134,13 @@ TEST(JudgementDelay, MakesAnEstimateFromARecordWithSpikes) {
   EXPECT_NEAR(coulomb_n(held.out) / sound_n, 1.0, 0.003);
 }
 
-TEST(Identifier, MakesNothingOfSpoiltSamples) {
+TEST(Estimator, MakesNothingOfSpoiltSamples) {
   std::vector<Sample> samples = record_of(60.0, {});
   for (std::size_t i = 9000; i < 9300; ++i) {
     samples[i].spoilt = true;
     samples[i].accel_mps2.fill(50.0);
   }
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   std::vector<std::int64_t> excluded;
   for (const Sample& sample : samples) {
     const UpdateResult result = identifier->update(sample);

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
@@ -16,16 +16,16 @@ namespace {
 constexpr int kSeconds = 200;
 
 ParameterDrift judge(const sim::SimulationConfig& simulation) {
-  IdentifierConfig config;
+  EstimatorConfig config;
   config.moving_mass_kg = simulation.truck.moving_mass_kg;
-  const auto identifier = std::make_unique<Identifier>(config);
+  const auto identifier = std::make_unique<Estimator>(config);
   sim::Simulation record{simulation};
   for (int i = 0; i < kSeconds * sim::kSampleRateHz; ++i)
     identifier->update(sim::to_sample(record.next()));
   identifier->finish();
   const auto statistics = std::make_unique<Statistics>();
   identifier->export_statistics(*statistics);
-  return find_parameter_drift(*statistics, Identifier::kBlockS);
+  return find_parameter_drift(*statistics, Estimator::kBlockS);
 }
 
 sim::SimulationConfig laden(std::uint64_t seed) {
@@ -81,7 +81,7 @@ TEST(ParameterDrift, SeesNoneInSoundRecordsNorInThoseWithAnEffect) {
 
 TEST(ParameterDrift, SaysNothingOfTooFewEntries) {
   const auto statistics = std::make_unique<Statistics>();
-  EXPECT_FALSE(find_parameter_drift(*statistics, Identifier::kBlockS).judged);
+  EXPECT_FALSE(find_parameter_drift(*statistics, Estimator::kBlockS).judged);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <memory>
 #include <numeric>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "tests/proof/callgrind.hpp"
 #include "tests/proof/ride.hpp"
 
@@ -30,7 +30,7 @@ TEST_P(DensityCost, IsBelowItsLimit) {
   const std::string motions = folder + "/ride.motions";
   {
     std::ofstream file{motions, std::ios::binary};
-    const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+    const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
     for (const Sample& sample : laden_ride(24.0)) {
       const UpdateResult result = identifier->update(sample);
       if (!result.has_motion) continue;

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <memory>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "tests/proof/ride.hpp"
 
 namespace dampline::proof {
@@ -20,7 +20,7 @@ const char* const kPath = DAMPLINE_SOURCE_DIR "/tests/proof/golden/laden_ride.tx
 
 /// What 120 s of a laden ride end in.
 Figures identify_ride() {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   for (const Sample& sample : laden_ride(120.0)) static_cast<void>(identifier->update(sample));
   identifier->finish();
   return figures_of(identifier->snapshot());

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "tests/proof/heap_hook.hpp"
 #include "tests/proof/ride.hpp"
 
@@ -37,11 +37,11 @@ class IdentifierHeap : public testing::TestWithParam<Memory> {};
 
 TEST_P(IdentifierHeap, IsNotTouchedByMillionsOfSamplesAndTheirSnapshots) {
   EndlessRide ride;
-  IdentifierConfig config;
+  EstimatorConfig config;
   config.memory = GetParam();
   config.memory_s = config.memory == Memory::kInfinite ? 0.0 : 120.0;
-  ASSERT_TRUE(Identifier::check(config).ok());
-  const auto identifier = std::make_unique<Identifier>(config);
+  ASSERT_TRUE(Estimator::check(config).ok());
+  const auto identifier = std::make_unique<Estimator>(config);
   Snapshot last;
   std::uint64_t calls = 0;
   {

@@ -49,7 +49,7 @@ std::string folder(const std::string& room) {
 void write_instants(const std::string& path) {
   sim::Simulation simulation{sim::SimulationConfig{}};
   sim::SensorNodes nodes{{}, 1};
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   std::ofstream file{path, std::ios::binary};
   for (std::int64_t i = 0; i < kInstants; ++i) {
     const sim::SimulatedSample simulated = simulation.next();

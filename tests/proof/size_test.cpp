@@ -4,16 +4,16 @@
 #include <iostream>
 #include <type_traits>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace dampline::proof {
 namespace {
 
 TEST(IdentifierSize, IsBelow512KiB) {
-  std::cout << "sizeof(Identifier) = " << sizeof(Identifier)
+  std::cout << "sizeof(Estimator) = " << sizeof(Estimator)
             << " bytes, sizeof(Snapshot) = " << sizeof(Snapshot)
             << " bytes, sizeof(Statistics) = " << sizeof(Statistics) << " bytes\n";
-  EXPECT_LT(sizeof(Identifier), 512U * 1024U);
+  EXPECT_LT(sizeof(Estimator), 512U * 1024U);
 }
 
 TEST(Statistics, CanBeCopiedByteByByte) { EXPECT_TRUE(std::is_trivially_copyable_v<Statistics>); }

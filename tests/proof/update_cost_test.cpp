@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "tests/proof/callgrind.hpp"
 #include "tests/proof/ride.hpp"
 
@@ -35,7 +35,7 @@ struct Cost {
   std::uint64_t max;
 };
 
-/// Instructions of Identifier::update for samples `first` up to `last` of a laden ride.
+/// Instructions of Estimator::update for samples `first` up to `last` of a laden ride.
 Cost cost_of_update(Memory memory, const std::vector<Sample>& ride, long first, long last) {
   const std::string samples = folder() + "/ride.samples";
   write_samples(samples, ride);

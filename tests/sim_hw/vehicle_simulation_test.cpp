@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
@@ -81,9 +81,9 @@ TEST(VehicleSimulation, GivesEachTruckNoiseOfItsOwn) {
 /// Level and stiffness that the shipped identifier finds, by `mass_kg`.
 Snapshot identified(const SimulationConfig& config, double mass_kg, int seconds) {
   Simulation simulation{config};
-  IdentifierConfig identifier_config;
+  EstimatorConfig identifier_config;
   identifier_config.moving_mass_kg = mass_kg;
-  const auto identifier = std::make_unique<Identifier>(identifier_config);
+  const auto identifier = std::make_unique<Estimator>(identifier_config);
   for (int i = 0; i < seconds * kSampleRateHz; ++i)
     static_cast<void>(identifier->update(to_sample(simulation.next())));
   return identifier->snapshot();

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace dampline {
 namespace {

@@ -93,8 +93,8 @@ struct Found {
 template <class Terms>
 Found identify_oscillator(const sim::AccelerometerRun& run,
                           const OscillatorIdentifierConfig& config = {}) {
-  using Identifier = OscillatorIdentifier<Terms>;
-  const auto identifier = std::make_unique<Identifier>(config);
+  using Estimator = OscillatorIdentifier<Terms>;
+  const auto identifier = std::make_unique<Estimator>(config);
   for (std::size_t n = 0; n < run.mass_mps2.size(); ++n) {
     identifier->update(static_cast<std::int64_t>(n), run.mass_mps2[n], run.base_mps2[n]);
   }

@@ -7,7 +7,7 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kStillShareLimit = 0.5;  // as the Identifier's gate
+constexpr double kStillShareLimit = 0.5;  // as the Estimator's gate
 constexpr double kStartScaleM = 1.0e-3;
 
 /// The half power of two nearest to a length, in units of a millimetre.
@@ -23,9 +23,9 @@ Grids scaled(Grids grids, double scale_m) noexcept {
 
 }  // namespace
 
-Diagnosis::Diagnosis(const IdentifierConfig& config, const Grids& grids) noexcept
+Diagnosis::Diagnosis(const EstimatorConfig& config, const Grids& grids) noexcept
     : sample_rate_hz_{config.sample_rate_hz},
-      block_ticks_{std::lround(Identifier::kBlockS * config.sample_rate_hz)},
+      block_ticks_{std::lround(Estimator::kBlockS * config.sample_rate_hz)},
       raw_{config.sample_rate_hz},
       rows_{config.sample_rate_hz},
       mean_{scaled(grids, grids.scale_m > 0.0 ? grids.scale_m : kStartScaleM),

@@ -3,28 +3,28 @@
 #include <array>
 #include <cstdint>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/effect/effect_rows.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/effect/impulse_meter.hpp"
 #include "dampline/effect/law_mean.hpp"
 #include "dampline/effect/raw_ring.hpp"
 #include "dampline/effect/resonator.hpp"
-#include "dampline/identifier.hpp"
 
 namespace dampline::effect {
 
-/// The sums that judge every candidate effect, gathered beside the estimate: the Identifier's
-/// companion, fed with each sample and with what the Identifier made of it. Its size is fixed;
+/// The sums that judge every candidate effect, gathered beside the estimate: the Estimator's
+/// companion, fed with each sample and with what the Estimator made of it. Its size is fixed;
 /// update() costs a bounded number of operations, allocates nothing and changes nothing in the
-/// Identifier.
+/// Estimator.
 class Diagnosis {
  public:
   /// Motion before the lengths of the candidates are fixed, s; it is not part of the sums.
   static constexpr double kLearningS = 8.0;
 
-  /// Precondition: Identifier::check(config).ok().
+  /// Precondition: Estimator::check(config).ok().
   /// `grids`: those of another record, or the ordinary ones; their scale is learnt where it is 0.
-  explicit Diagnosis(const IdentifierConfig& config, const Grids& grids = {}) noexcept;
+  explicit Diagnosis(const EstimatorConfig& config, const Grids& grids = {}) noexcept;
 
   void update(const Sample& sample, const UpdateResult& result) noexcept;
   /// The end of a record: closes the open blocks.

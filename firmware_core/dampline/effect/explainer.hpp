@@ -61,7 +61,7 @@ class Explainer {
     const Diagnosis* remembering{nullptr};
   };
   /// What a complete model leaves, from the twin: a record of the base law simulated on the same
-  /// input, with the sensors' noise and resolution, through the same Identifier and a Diagnosis of
+  /// input, with the sensors' noise and resolution, through the same Estimator and a Diagnosis of
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
   /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
   /// rows.

@@ -27,7 +27,7 @@ struct WrongSample {
   std::size_t channel{0};
 };
 
-/// Companion of the Identifier: names what is wrong with the data themselves, so that it is never
+/// Companion of the Estimator: names what is wrong with the data themselves, so that it is never
 /// taken for a property of the suspension. The same samples in, in any order of the two; faults at
 /// any moment. Fixed size, bounded work per sample, no second pass. What needs blocks is known some
 /// 10 to 40 s after it happened.

@@ -9,7 +9,7 @@
 
 namespace dampline {
 
-/// Samples wait here until the guards have judged them, on their way to the Identifier. Single
+/// Samples wait here until the guards have judged them, on their way to the Estimator. Single
 /// wrong samples are replaced by what their neighbours say,
 /// x0 = (-x_-2 + 4 x_-1 + 4 x_+1 - x_+2) / 6; where a fault lasts for some seconds only (a jump of
 /// the zero, a burst of noise, samples that were lost or repeated and not counted), samples come

@@ -42,7 +42,7 @@ struct PhaseSnapshot {
 };
 
 /// Density pictures of the three planes of (y, y', y''), and stroboscopic sections at four phases
-/// of a period that is known or detected. Takes what an Identifier gives out. Fixed size, no heap;
+/// of a period that is known or detected. Takes what an Estimator gives out. Fixed size, no heap;
 /// every ten seconds of samples, one call looks for the period, which takes some ten microseconds.
 class PhaseView {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Feeds recorded samples to an Identifier; run under valgrind by update_cost_test.cpp, which
+// Feeds recorded samples to an Estimator; run under valgrind by update_cost_test.cpp, which
 // counts the instructions of each call of update_measured().
 // Usage: cost_probe SAMPLES MEMORY FIRST LAST
 // SAMPLES is a file of Sample structs; FIRST <= i < LAST go through update_measured().
@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <memory>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace {
 
-dampline::Identifier* identifier = nullptr;
+dampline::Estimator* identifier = nullptr;
 
 }  // namespace
 
@@ -26,9 +26,9 @@ int main(int argc, char** argv) {
   if (file == nullptr) return 1;
   const long first = std::atol(argv[3]);
   const long last = std::atol(argv[4]);
-  const dampline::IdentifierConfig config{
+  const dampline::EstimatorConfig config{
       .memory = static_cast<dampline::Memory>(std::atoi(argv[2])), .memory_s = 30.0};
-  const auto owner = std::make_unique<dampline::Identifier>(config);
+  const auto owner = std::make_unique<dampline::Estimator>(config);
   identifier = owner.get();
   dampline::Sample sample;
   for (long i = 0; i < last && std::fread(&sample, sizeof sample, 1, file) == 1; ++i) {

@@ -38,8 +38,8 @@ AssemblerConfig assembler_config() {
   return config;
 }
 
-IdentifierConfig identifier_config() {
-  IdentifierConfig config;
+EstimatorConfig identifier_config() {
+  EstimatorConfig config;
   config.screen.step_mps2 = kCountMps2;
   return config;
 }
@@ -108,7 +108,7 @@ struct Effect final : Room {
 };
 
 struct IdentifierRoom final : Room {
-  Identifier identifier{identifier_config()};
+  Estimator identifier{identifier_config()};
   void take(const Instant& instant) override {
     static_cast<void>(identifier.update(instant.sample));
   }
@@ -121,7 +121,7 @@ enum class Parts : std::uint8_t { kEstimate, kIdentify, kExplain };
 template <Parts kParts>
 struct Chain final : Room {
   Decode decode{};
-  Identifier identifier{identifier_config()};
+  Estimator identifier{identifier_config()};
   Methods methods{identifier_config()};
   GuardRoom guard{};
   Phase phase{};
@@ -142,7 +142,7 @@ struct Chain final : Room {
 
 /// One snapshot every five seconds.
 struct Answer final : Room {
-  Identifier identifier{identifier_config()};
+  Estimator identifier{identifier_config()};
   Snapshot snapshot{};
   void take(const Instant& instant) override {
     static_cast<void>(identifier.update(instant.sample));

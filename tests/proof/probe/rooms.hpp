@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "dampline/can_frame.hpp"
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 namespace dampline::proof {
 
@@ -12,7 +12,7 @@ namespace dampline::proof {
 struct Instant {
   std::array<CanFrame, kChannels> frames{};
   Sample sample{};
-  UpdateResult result{};  ///< of an Identifier that has seen all samples up to this one
+  UpdateResult result{};  ///< of an Estimator that has seen all samples up to this one
 };
 
 /// Resolution of the accelerations in `frames`, m/s^2 per count: 12 bit over 5 g and 10 g.

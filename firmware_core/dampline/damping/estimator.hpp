@@ -22,7 +22,7 @@
 
 namespace dampline {
 
-struct IdentifierConfig {
+struct EstimatorConfig {
   double sample_rate_hz{300.0};    ///< 150...400
   double moving_mass_kg{37200.0};  ///< truck frame and its share of the body; scales every force
   /// 0.7 or 1.0: what is slower is not velocity but drift. 0: chosen once, from the sensors' noise.
@@ -46,15 +46,15 @@ struct UpdateResult {
 /// clock.
 ///
 /// M z_b'' + k y + F(v) = 0 with y = 2 z_b - (z_1 + z_2), v = y'.
-class Identifier {
+class Estimator {
  public:
   static constexpr double kBlockS = 2.0;
 
   /// kInvalidConfig when a setting is out of its range.
-  [[nodiscard]] static Result<IdentifierConfig> check(const IdentifierConfig& config) noexcept;
+  [[nodiscard]] static Result<EstimatorConfig> check(const EstimatorConfig& config) noexcept;
 
   /// Precondition: check(config).ok().
-  explicit Identifier(const IdentifierConfig& config) noexcept;
+  explicit Estimator(const EstimatorConfig& config) noexcept;
 
   UpdateResult update(const Sample& sample) noexcept;
 
@@ -83,7 +83,7 @@ class Identifier {
   [[nodiscard]] double motion_latency_s() const noexcept;
   [[nodiscard]] double row_latency_s() const noexcept;
 
-  [[nodiscard]] const IdentifierConfig& config() const noexcept { return config_; }
+  [[nodiscard]] const EstimatorConfig& config() const noexcept { return config_; }
 
  private:
   static constexpr std::size_t kHistory = 1024;
@@ -107,13 +107,13 @@ class Identifier {
   [[nodiscard]] static std::size_t history(std::int64_t n) noexcept {
     return static_cast<std::size_t>(n) % kHistory;
   }
-  [[nodiscard]] static ScreenConfig screen_config(const IdentifierConfig& config) noexcept;
+  [[nodiscard]] static ScreenConfig screen_config(const EstimatorConfig& config) noexcept;
   [[nodiscard]] std::int64_t velocity_delay() const noexcept {
     return VelocityLift::kHalf + velocity_.delay();
   }
   [[nodiscard]] std::uint64_t basis_hash() const noexcept;
 
-  IdentifierConfig config_;
+  EstimatorConfig config_;
   double step_s_;
   std::int64_t block_ticks_;
   std::int64_t row_reach_{0};  // samples from the centre of the longest row to the newest it needs

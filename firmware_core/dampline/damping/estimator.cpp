@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ std::size_t nearest_node(const std::array<double, kCurveSegments>& nodes, double
 
 }  // namespace
 
-Result<IdentifierConfig> Identifier::check(const IdentifierConfig& config) noexcept {
+Result<EstimatorConfig> Estimator::check(const EstimatorConfig& config) noexcept {
   const double rate = config.sample_rate_hz;
   if (!(rate >= kMinRateHz && rate <= WindowBank::kMaxRateHz)) return Errc::kInvalidConfig;
   if (!(config.moving_mass_kg > 0.0) || !std::isfinite(config.moving_mass_kg)) {
@@ -53,7 +53,7 @@ Result<IdentifierConfig> Identifier::check(const IdentifierConfig& config) noexc
   return config;
 }
 
-Identifier::Identifier(const IdentifierConfig& config) noexcept
+Estimator::Estimator(const EstimatorConfig& config) noexcept
     : config_{config},
       step_s_{1.0 / config.sample_rate_hz},
       block_ticks_{std::lround(kBlockS * config.sample_rate_hz)},
@@ -75,13 +75,13 @@ Identifier::Identifier(const IdentifierConfig& config) noexcept
   }
 }
 
-ScreenConfig Identifier::screen_config(const IdentifierConfig& config) noexcept {
+ScreenConfig Estimator::screen_config(const EstimatorConfig& config) noexcept {
   ScreenConfig screen = config.screen;
   screen.sample_rate_hz = config.sample_rate_hz;
   return screen;
 }
 
-UpdateResult Identifier::update(const Sample& sample) noexcept {
+UpdateResult Estimator::update(const Sample& sample) noexcept {
   UpdateResult result;
   if (any_ && sample.tick <= newest_tick_) {
     ++counts_.repeated;
@@ -97,7 +97,7 @@ UpdateResult Identifier::update(const Sample& sample) noexcept {
   return result;
 }
 
-void Identifier::take(const Screened& screened, UpdateResult& result) noexcept {
+void Estimator::take(const Screened& screened, UpdateResult& result) noexcept {
   const std::int64_t tick = screened.sample.tick;
   if (started_ && tick != last_tick_ + 1) take_gap(tick);
   if (!started_) open_block_ = block_of(tick);
@@ -114,7 +114,7 @@ void Identifier::take(const Screened& screened, UpdateResult& result) noexcept {
   close_blocks_before(block_of(std::max<std::int64_t>(tick - row_reach_, 0)));
 }
 
-void Identifier::count_fault(Verdict verdict, std::int64_t block) noexcept {
+void Estimator::count_fault(Verdict verdict, std::int64_t block) noexcept {
   switch (verdict) {
     case Verdict::kGood:
       return;
@@ -132,7 +132,7 @@ void Identifier::count_fault(Verdict verdict, std::int64_t block) noexcept {
   }
 }
 
-void Identifier::take_gap(std::int64_t tick) noexcept {
+void Estimator::take_gap(std::int64_t tick) noexcept {
   ++counts_.gaps;
   counts_.lost += static_cast<std::uint64_t>(tick - last_tick_ - 1);
   ledger_.mark(block_of(last_tick_ + 1), Fault::kGap);
@@ -143,7 +143,7 @@ void Identifier::take_gap(std::int64_t tick) noexcept {
   open_block_ = std::max(open_block_, block_of(tick));
 }
 
-void Identifier::start_stretch(std::int64_t tick) noexcept {
+void Estimator::start_stretch(std::int64_t tick) noexcept {
   in_stretch_ = true;
   stretch_tick_ = tick;
   count_ = 0;
@@ -155,7 +155,7 @@ void Identifier::start_stretch(std::int64_t tick) noexcept {
   average_.reset();
 }
 
-DAMPLINE_WIDE void Identifier::process(const Sample& sample, UpdateResult& result) noexcept {
+DAMPLINE_WIDE void Estimator::process(const Sample& sample, UpdateResult& result) noexcept {
   const auto& a = sample.accel_mps2;
   const double relative_mps2 = 2.0 * a[0] - a[1] - a[2];
   const std::int64_t n = count_++;
@@ -175,14 +175,14 @@ DAMPLINE_WIDE void Identifier::process(const Sample& sample, UpdateResult& resul
   }
 }
 
-void Identifier::choose_corner() noexcept {
+void Estimator::choose_corner() noexcept {
   if (corner_chosen_ || noise_.count() < kCornerDecision) return;
   const bool noisy = noise_.std() > kNoiseForHighCornerMps2;
   velocity_.set_corner(noisy ? Baseline::Corner::k1p0Hz : Baseline::Corner::k0p7Hz);
   corner_chosen_ = true;
 }
 
-void Identifier::take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept {
+void Estimator::take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept {
   activity_ += (velocity_mps * velocity_mps - activity_) * step_s_ / kActivityTimeS;
   const bool still =
       activity_ < kStillMps * kStillMps || input_activity_ < kQuietInputMps2 * kQuietInputMps2;
@@ -207,7 +207,7 @@ void Identifier::take_velocity(std::int64_t n, double velocity_mps, UpdateResult
   build_rows(n - 1);
 }
 
-void Identifier::count_velocity(double velocity_mps, bool still) noexcept {
+void Estimator::count_velocity(double velocity_mps, bool still) noexcept {
   if (still) return;
   const double speed = std::abs(velocity_mps);
   ++velocity_counts_.moving;
@@ -218,7 +218,7 @@ void Identifier::count_velocity(double velocity_mps, bool still) noexcept {
 }
 
 // Centres lie on a fixed raster of ticks, of its own phase per scale: stride / 2.
-void Identifier::begin_raster(std::int64_t first_law) noexcept {
+void Estimator::begin_raster(std::int64_t first_law) noexcept {
   first_law_ = first_law;
   for (std::size_t s = 0; s < kScales; ++s) {
     const int stride = rows_.bank().stride(s);
@@ -228,7 +228,7 @@ void Identifier::begin_raster(std::int64_t first_law) noexcept {
   }
 }
 
-void Identifier::build_rows(std::int64_t newest) noexcept {
+void Estimator::build_rows(std::int64_t newest) noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {
     if (--until_row_[s] > 0) continue;
     until_row_[s] = rows_.bank().stride(s);
@@ -238,7 +238,7 @@ void Identifier::build_rows(std::int64_t newest) noexcept {
   }
 }
 
-void Identifier::build_row(std::size_t scale, std::int64_t centre) noexcept {
+void Estimator::build_row(std::size_t scale, std::int64_t centre) noexcept {
   const std::int64_t block = block_of(stretch_tick_ + centre);
   if (rows_.still_share(scale, centre) > kStillShareLimit) {
     ledger_.add_still_row(block);
@@ -250,7 +250,7 @@ void Identifier::build_row(std::size_t scale, std::int64_t centre) noexcept {
   store_.absorb(block, scale, rows_.row(scale, centre));
 }
 
-void Identifier::close_blocks_before(std::int64_t block) noexcept {
+void Estimator::close_blocks_before(std::int64_t block) noexcept {
   for (; open_block_ < block; ++open_block_) {
     const BlockStatus status =
         ledger_.close(open_block_, rows_per_block_ - static_cast<std::uint32_t>(kScales));
@@ -262,7 +262,7 @@ void Identifier::close_blocks_before(std::int64_t block) noexcept {
   }
 }
 
-void Identifier::finish() noexcept {
+void Estimator::finish() noexcept {
   UpdateResult result;
   Screened screened;
   while (screen_.drain(screened)) take(screened, result);

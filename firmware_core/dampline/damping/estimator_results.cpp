@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What is known so far: the Identifier's results and statistics. The path of a sample is in
-// identifier.cpp.
+// What is known so far: the Estimator's results and statistics. The path of a sample is in
+// estimator.cpp.
 #include <bit>
 
+#include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
-#include "dampline/identifier.hpp"
 
 namespace dampline {
 namespace {
@@ -26,7 +26,7 @@ std::uint64_t hashed(std::uint64_t hash, double value) noexcept {
 
 }  // namespace
 
-StatisticsHeader Identifier::header() const noexcept {
+StatisticsHeader Estimator::header() const noexcept {
   return {.basis_hash = basis_hash(),
           .sample_rate_hz = config_.sample_rate_hz,
           .velocity_corner_hz = corner_hz(velocity_.corner()),
@@ -39,7 +39,7 @@ StatisticsHeader Identifier::header() const noexcept {
           .counts = counts_};
 }
 
-Snapshot Identifier::snapshot() noexcept {
+Snapshot Estimator::snapshot() noexcept {
   store_.finish();
   ScaleFactors total;
   store_.total_to(total);
@@ -49,7 +49,7 @@ Snapshot Identifier::snapshot() noexcept {
                    {.moving_mass_kg = config_.moving_mass_kg});
 }
 
-Level Identifier::level() noexcept {
+Level Estimator::level() noexcept {
   store_.finish();
   ScaleFactors total;
   store_.total_to(total);
@@ -59,7 +59,7 @@ Level Identifier::level() noexcept {
                          {.moving_mass_kg = config_.moving_mass_kg});
 }
 
-void Identifier::export_statistics(Statistics& out) noexcept {
+void Estimator::export_statistics(Statistics& out) noexcept {
   store_.finish();
   out.header = header();
   store_.total_to(out.total);
@@ -70,26 +70,26 @@ void Identifier::export_statistics(Statistics& out) noexcept {
   out.header.entry_count = static_cast<std::uint32_t>(count);
 }
 
-void Identifier::clear_statistics() noexcept {
+void Estimator::clear_statistics() noexcept {
   store_.clear();
   velocity_counts_ = {};
   counts_ = {};
 }
 
-double Identifier::velocity_latency_s() const noexcept {
+double Estimator::velocity_latency_s() const noexcept {
   return static_cast<double>(velocity_delay() + static_cast<std::int64_t>(screen_.delay())) *
          step_s_;
 }
 
-double Identifier::motion_latency_s() const noexcept {
+double Estimator::motion_latency_s() const noexcept {
   return velocity_latency_s() + deflection_.delay() * step_s_;
 }
 
-double Identifier::row_latency_s() const noexcept {
+double Estimator::row_latency_s() const noexcept {
   return static_cast<double>(row_reach_ + static_cast<std::int64_t>(screen_.delay())) * step_s_;
 }
 
-std::uint64_t Identifier::basis_hash() const noexcept {
+std::uint64_t Estimator::basis_hash() const noexcept {
   std::uint64_t hash = hashed(0xcbf29ce484222325ULL, static_cast<double>(kBasisVersion));
   hash = hashed(hash, config_.sample_rate_hz);
   hash = hashed(hash, corner_hz(velocity_.corner()));

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "tests/identifier/record.hpp"
+#include "tests/estimator/record.hpp"
 
 namespace dampline {
 namespace {
@@ -26,7 +26,7 @@ BlockStatus status_at(const Identified& run, std::int64_t first_tick) {
   return BlockStatus::kUsed;
 }
 
-TEST(IdentifierFaults, ACleanRecordHasNone) {
+TEST(EstimatorFaults, ACleanRecordHasNone) {
   const Identified run = identify(laden_record());
   expect_right(run.snapshot);
   const Counts& c = run.snapshot.counts;
@@ -36,7 +36,7 @@ TEST(IdentifierFaults, ACleanRecordHasNone) {
   EXPECT_EQ(c.blocks, 50U);
 }
 
-TEST(IdentifierFaults, AGapExcludesItsBlock) {
+TEST(EstimatorFaults, AGapExcludesItsBlock) {
   auto record = laden_record();
   record.erase(record.begin() + kBadAt, record.begin() + kBadAt + 10);
   const Identified run = identify(record);
@@ -47,7 +47,7 @@ TEST(IdentifierFaults, AGapExcludesItsBlock) {
   EXPECT_EQ(status_at(run, kBadBlock), BlockStatus::kExcludedGap);
 }
 
-TEST(IdentifierFaults, AGapOverABoundaryExcludesBothBlocks) {
+TEST(EstimatorFaults, AGapOverABoundaryExcludesBothBlocks) {
   auto record = laden_record();
   record.erase(record.begin() + 15590, record.begin() + 15610);
   const Identified run = identify(record);
@@ -57,7 +57,7 @@ TEST(IdentifierFaults, AGapOverABoundaryExcludesBothBlocks) {
   EXPECT_EQ(status_at(run, kBadBlock + 600), BlockStatus::kExcludedGap);
 }
 
-TEST(IdentifierFaults, SaturationExcludesItsBlock) {
+TEST(EstimatorFaults, SaturationExcludesItsBlock) {
   auto record = laden_record();
   for (std::size_t i = kBadAt; i < kBadAt + 5; ++i) {
     record[i].saturated = 2;
@@ -70,7 +70,7 @@ TEST(IdentifierFaults, SaturationExcludesItsBlock) {
   EXPECT_EQ(status_at(run, kBadBlock), BlockStatus::kExcludedSaturated);
 }
 
-TEST(IdentifierFaults, AStuckChannelExcludesItsBlock) {
+TEST(EstimatorFaults, AStuckChannelExcludesItsBlock) {
   auto record = laden_record();
   for (std::size_t i = kBadAt; i < kBadAt + 200; ++i)
     record[i].accel_mps2[0] = record[kBadAt].accel_mps2[0];
@@ -81,7 +81,7 @@ TEST(IdentifierFaults, AStuckChannelExcludesItsBlock) {
   EXPECT_EQ(status_at(run, kBadBlock), BlockStatus::kExcludedStuck);
 }
 
-TEST(IdentifierFaults, NotANumberExcludesItsBlockAndNeverReachesTheResult) {
+TEST(EstimatorFaults, NotANumberExcludesItsBlockAndNeverReachesTheResult) {
   auto record = laden_record();
   record[kBadAt].accel_mps2[2] = std::numeric_limits<double>::quiet_NaN();
   record[kBadAt + 7].accel_mps2[0] = -std::numeric_limits<double>::infinity();
@@ -92,7 +92,7 @@ TEST(IdentifierFaults, NotANumberExcludesItsBlockAndNeverReachesTheResult) {
   EXPECT_EQ(status_at(run, kBadBlock), BlockStatus::kExcludedNotFinite);
 }
 
-TEST(IdentifierFaults, NeighboursOfABadBlockArePartialAndTheOthersWhole) {
+TEST(EstimatorFaults, NeighboursOfABadBlockArePartialAndTheOthersWhole) {
   auto record = laden_record();
   record[kBadAt].saturated = 1;
   const Identified run = identify(record);
@@ -111,7 +111,7 @@ TEST(IdentifierFaults, NeighboursOfABadBlockArePartialAndTheOthersWhole) {
   }
 }
 
-TEST(IdentifierFaults, EveryBlockIsReportedOnceAndInOrder) {
+TEST(EstimatorFaults, EveryBlockIsReportedOnceAndInOrder) {
   auto record = laden_record();
   record.erase(record.begin() + 9000, record.begin() + 9700);
   record[kBadAt].saturated = 1;
@@ -123,7 +123,7 @@ TEST(IdentifierFaults, EveryBlockIsReportedOnceAndInOrder) {
 }
 
 /// Where no row may reach, the values must not matter at all.
-TEST(IdentifierFaults, NothingOfABadSampleIsUsed) {
+TEST(EstimatorFaults, NothingOfABadSampleIsUsed) {
   struct Wild {
     double a, b, c;
   };
@@ -141,7 +141,7 @@ TEST(IdentifierFaults, NothingOfABadSampleIsUsed) {
   expect_right(one);
 }
 
-TEST(IdentifierFaults, TheKindOfNotANumberDoesNotMatter) {
+TEST(EstimatorFaults, TheKindOfNotANumberDoesNotMatter) {
   const auto with = [](double a, double b) {
     auto record = laden_record();
     for (std::size_t i = kBadAt; i < kBadAt + 20; ++i)
@@ -153,7 +153,7 @@ TEST(IdentifierFaults, TheKindOfNotANumberDoesNotMatter) {
   EXPECT_EQ(bits_of(with(nan, 1.0)), bits_of(with(infinity, -1e6)));
 }
 
-TEST(IdentifierFaults, TheValueAtWhichAChannelSticksDoesNotMatter) {
+TEST(EstimatorFaults, TheValueAtWhichAChannelSticksDoesNotMatter) {
   const auto with = [](double value) {
     auto record = laden_record();
     for (std::size_t i = kBadAt; i < kBadAt + 400; ++i) record[i].accel_mps2[1] = value;
@@ -163,17 +163,17 @@ TEST(IdentifierFaults, TheValueAtWhichAChannelSticksDoesNotMatter) {
 }
 
 // Only the phase of the filters' low-rate part differs.
-TEST(IdentifierFaults, BadSamplesHardlyChangeBlocksFarFromThem) {
+TEST(EstimatorFaults, BadSamplesHardlyChangeBlocksFarFromThem) {
   auto record = laden_record();
   record[kBadAt].saturated = 4;
-  const auto config = IdentifierConfig{.memory = Memory::kWindow, .memory_s = 30.0};
+  const auto config = EstimatorConfig{.memory = Memory::kWindow, .memory_s = 30.0};
   const Snapshot disturbed = identify(record, config).snapshot;
   const Snapshot clean = identify(laden_record(), config).snapshot;
   EXPECT_NEAR(disturbed.coulomb_n.value / clean.coulomb_n.value, 1.0, 2e-4);
   EXPECT_NEAR(disturbed.curve[3].force_n / clean.curve[3].force_n, 1.0, 1e-3);
 }
 
-TEST(IdentifierFaults, RepeatedAndLateSamplesAreCountedAndIgnored) {
+TEST(EstimatorFaults, RepeatedAndLateSamplesAreCountedAndIgnored) {
   auto record = laden_record();
   const Snapshot clean = identify(record).snapshot;
   Sample late = record[5000];
@@ -186,7 +186,7 @@ TEST(IdentifierFaults, RepeatedAndLateSamplesAreCountedAndIgnored) {
   EXPECT_EQ(disturbed.counts.samples, clean.counts.samples);
 }
 
-TEST(IdentifierFaults, AGapOfDaysIsOneGap) {
+TEST(EstimatorFaults, AGapOfDaysIsOneGap) {
   auto record = laden_record();
   constexpr std::int64_t kDays = std::int64_t{300} * 86400 * 400;
   for (std::size_t i = kBadAt; i < record.size(); ++i) record[i].tick += kDays;
@@ -197,7 +197,7 @@ TEST(IdentifierFaults, AGapOfDaysIsOneGap) {
   EXPECT_LE(run.snapshot.counts.blocks, 55U);
 }
 
-TEST(IdentifierFaults, AGapAtEveryBlockLeavesNoResultAndNoHang) {
+TEST(EstimatorFaults, AGapAtEveryBlockLeavesNoResultAndNoHang) {
   auto record = laden_record();
   for (Sample& s : record) s.tick += 5 * (s.tick / 500);
   const Snapshot s = identify(record).snapshot;
@@ -206,7 +206,7 @@ TEST(IdentifierFaults, AGapAtEveryBlockLeavesNoResultAndNoHang) {
   EXPECT_EQ(s.counts.gaps, record.size() / 500 - 1);
 }
 
-TEST(IdentifierFaults, OneBadSampleAnywhereExcludesOneBlock) {
+TEST(EstimatorFaults, OneBadSampleAnywhereExcludesOneBlock) {
   for (const std::size_t at : {15000U, 15001U, 15007U, 15300U, 15598U, 15599U}) {
     auto record = laden_record();
     record[at].saturated = 1;

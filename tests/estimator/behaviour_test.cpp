@@ -5,18 +5,18 @@
 #include <iostream>
 #include <limits>
 
-#include "tests/identifier/record.hpp"
+#include "tests/estimator/record.hpp"
 
 namespace dampline {
 namespace {
 
-TEST(Identifier, FitsInHalfAMebibyte) {
-  std::cout << "sizeof(Identifier) = " << sizeof(Identifier) << " bytes\n";
-  EXPECT_LT(sizeof(Identifier), 512U * 1024U);
+TEST(Estimator, FitsInHalfAMebibyte) {
+  std::cout << "sizeof(Estimator) = " << sizeof(Estimator) << " bytes\n";
+  EXPECT_LT(sizeof(Estimator), 512U * 1024U);
 }
 
-TEST(Identifier, GivesMotionOfAnEarlierSampleAtAConstantLag) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, GivesMotionOfAnEarlierSampleAtAConstantLag) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   std::int64_t lag = -1;
   int motions = 0;
   std::int64_t last_tick = -1;
@@ -42,7 +42,7 @@ class MotionAtRate : public testing::TestWithParam<double> {};
 // At the highest rate the accelerations have to be kept longest.
 TEST_P(MotionAtRate, CarriesTheAccelerationsOfItsOwnSample) {
   const auto identifier =
-      std::make_unique<Identifier>(IdentifierConfig{.sample_rate_hz = GetParam()});
+      std::make_unique<Estimator>(EstimatorConfig{.sample_rate_hz = GetParam()});
   int motions = 0;
   for (std::int64_t tick = 0; tick < 6000; ++tick) {
     const double t = static_cast<double>(tick);
@@ -60,10 +60,10 @@ TEST_P(MotionAtRate, CarriesTheAccelerationsOfItsOwnSample) {
 }
 INSTANTIATE_TEST_SUITE_P(Rates, MotionAtRate, testing::Values(150.0, 300.0, 400.0));
 
-TEST(Identifier, TellsStandstillFromMotion) {
+TEST(Estimator, TellsStandstillFromMotion) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
   config.speed.standstills[0] = {60.0, 90.0};
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   int still_at_rest = 0;
   int still_under_way = 0;
   for (const Sample& sample : simulate(config, 100.0)) {
@@ -77,9 +77,9 @@ TEST(Identifier, TellsStandstillFromMotion) {
   EXPECT_EQ(still_under_way, 0);
 }
 
-TEST(Identifier, KnowsARowsLatency) {
+TEST(Estimator, KnowsARowsLatency) {
   // The row whose centre lies in the last stride of block 0 is counted when its reach is complete.
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   std::int64_t closed_at = -1;
   for (const Sample& s : laden_record()) {
     if (identifier->update(s).block_closed) {
@@ -92,8 +92,8 @@ TEST(Identifier, KnowsARowsLatency) {
   EXPECT_LT(identifier->row_latency_s(), 3.5);
 }
 
-TEST(Identifier, ItsLevelIsThatOfItsSnapshotToTheLastBit) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, ItsLevelIsThatOfItsSnapshotToTheLastBit) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   int compared = 0;
   std::size_t samples = 0;
   for (const Sample& sample : laden_record()) {
@@ -111,7 +111,7 @@ TEST(Identifier, ItsLevelIsThatOfItsSnapshotToTheLastBit) {
   EXPECT_GE(compared, 7);
 }
 
-TEST(Identifier, PausesAtAStandstill) {
+TEST(Estimator, PausesAtAStandstill) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
   config.speed.standstills[0] = {60.0, 90.0};
   const Snapshot s = identify(simulate(config, 150.0)).snapshot;
@@ -123,7 +123,7 @@ TEST(Identifier, PausesAtAStandstill) {
   EXPECT_LT(s.excitation, 0.95);
 }
 
-TEST(Identifier, SaysNothingOfACarThatNeverMoved) {
+TEST(Estimator, SaysNothingOfACarThatNeverMoved) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 7);
   config.speed.standstills[0] = {0.0, 1000.0};
   auto record = simulate(config, 60.0);
@@ -132,16 +132,16 @@ TEST(Identifier, SaysNothingOfACarThatNeverMoved) {
   EXPECT_EQ(s.counts.rows, 0U);
 }
 
-TEST(Identifier, SaysNothingOfTooShortARecord) {
+TEST(Estimator, SaysNothingOfTooShortARecord) {
   const std::vector<Sample> record(laden_record().begin(), laden_record().begin() + 2000);
   EXPECT_FALSE(identify(record).snapshot.valid);
 }
 
-TEST(Identifier, ChoosesTheCornerByTheNoise) {
+TEST(Estimator, ChoosesTheCornerByTheNoise) {
   const auto corner_of = [](double noise_mps2) {
     auto config = sim::reference_run(sim::Load::kLaden, 80.0, 12);
     config.sensors.noise_mps2 = noise_mps2;
-    const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+    const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
     for (const Sample& s : simulate(config, 10.0)) identifier->update(s);
     const auto statistics = std::make_unique<Statistics>();
     identifier->export_statistics(*statistics);
@@ -152,7 +152,7 @@ TEST(Identifier, ChoosesTheCornerByTheNoise) {
 }
 
 /// Friction rises by 30 % in the middle: who forgets knows only the second half.
-TEST(Identifier, AWindowForgetsWhatIsOlder) {
+TEST(Estimator, AWindowForgetsWhatIsOlder) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 21);
   auto record = simulate(config, 80.0);
   config.truck.friction_scale = 1.3;
@@ -172,14 +172,14 @@ TEST(Identifier, AWindowForgetsWhatIsOlder) {
   EXPECT_NEAR(forgetting.coulomb_n.value / second_n, 1.0, 0.02);
 }
 
-TEST(Identifier, RefusesEachSettingThatIsOutOfRange) {
+TEST(Estimator, RefusesEachSettingThatIsOutOfRange) {
   const auto refused = [](const auto& change) {
-    IdentifierConfig config;
+    EstimatorConfig config;
     change(config);
-    const auto result = Identifier::check(config);
+    const auto result = Estimator::check(config);
     return !result.ok() && result.error() == Errc::kInvalidConfig;
   };
-  using C = IdentifierConfig;
+  using C = EstimatorConfig;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(refused([](C&) {})) << "the defaults are in range";
   EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 149.9; }));
@@ -211,15 +211,15 @@ TEST(Identifier, RefusesEachSettingThatIsOutOfRange) {
   }));
 }
 
-TEST(Identifier, RefusesAnInfiniteMassOrMemory) {
-  IdentifierConfig mass;
+TEST(Estimator, RefusesAnInfiniteMassOrMemory) {
+  EstimatorConfig mass;
   mass.moving_mass_kg = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(Identifier::check(mass).ok());
+  EXPECT_FALSE(Estimator::check(mass).ok());
   for (const Memory memory : {Memory::kWindow, Memory::kForgetting}) {
-    IdentifierConfig config;
+    EstimatorConfig config;
     config.memory = memory;
     config.memory_s = std::numeric_limits<double>::infinity();
-    EXPECT_FALSE(Identifier::check(config).ok());
+    EXPECT_FALSE(Estimator::check(config).ok());
   }
 }
 

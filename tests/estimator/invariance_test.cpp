@@ -7,12 +7,12 @@
 
 #include "dampline/damping/summary.hpp"
 #include "dampline/estimate/merge.hpp"
-#include "tests/identifier/record.hpp"
+#include "tests/estimator/record.hpp"
 
 namespace dampline {
 namespace {
 
-TEST(Identifier, DoesNotDependOnWhereTheTicksBegin) {
+TEST(Estimator, DoesNotDependOnWhereTheTicksBegin) {
   // A multiple of the block's length and of every stride.
   const WindowBank bank{300.0};
   std::int64_t shift = 600;
@@ -23,7 +23,7 @@ TEST(Identifier, DoesNotDependOnWhereTheTicksBegin) {
   EXPECT_EQ(bits_of(identify(record).snapshot), bits_of(identify(laden_record()).snapshot));
 }
 
-TEST(Identifier, HardlyDependsOnAnyOtherShift) {
+TEST(Estimator, HardlyDependsOnAnyOtherShift) {
   auto record = laden_record();
   for (Sample& s : record) s.tick += 317;
   const Snapshot a = identify(record).snapshot;
@@ -32,22 +32,22 @@ TEST(Identifier, HardlyDependsOnAnyOtherShift) {
   EXPECT_NE(bits_of(a), bits_of(b));
 }
 
-TEST(Identifier, LookingDoesNotChangeWhatComesLater) {
-  const auto looking = [](Identifier& identifier, std::size_t i) {
+TEST(Estimator, LookingDoesNotChangeWhatComesLater) {
+  const auto looking = [](Estimator& identifier, std::size_t i) {
     if (i % 411 == 17) static_cast<void>(identifier.snapshot());
   };
   EXPECT_EQ(bits_of(identify(laden_record(), {}, looking).snapshot),
             bits_of(identify(laden_record()).snapshot));
 }
 
-TEST(Identifier, LookingTwiceShowsTheSame) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, LookingTwiceShowsTheSame) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   for (const Sample& s : laden_record()) identifier->update(s);
   EXPECT_EQ(bits_of(identifier->snapshot()), bits_of(identifier->snapshot()));
 }
 
-TEST(Identifier, FinishingTwiceIsFinishingOnce) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, FinishingTwiceIsFinishingOnce) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   for (const Sample& s : laden_record()) identifier->update(s);
   identifier->finish();
   const Snapshot once = identifier->snapshot();
@@ -58,15 +58,15 @@ TEST(Identifier, FinishingTwiceIsFinishingOnce) {
   EXPECT_EQ(once.counts.rows, twice.counts.rows);
 }
 
-TEST(Identifier, FinishingBeforeAnySampleIsHarmless) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, FinishingBeforeAnySampleIsHarmless) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   identifier->finish();
   EXPECT_FALSE(identifier->snapshot().valid);
   BlockReport report;
   EXPECT_FALSE(identifier->next_report(report));
 }
 
-TEST(Identifier, IsNotFooledByABiasOfASensor) {
+TEST(Estimator, IsNotFooledByABiasOfASensor) {
   auto record = laden_record();
   for (Sample& s : record) {
     s.accel_mps2[0] += 0.2;
@@ -81,7 +81,7 @@ TEST(Identifier, IsNotFooledByABiasOfASensor) {
 }
 
 /// Gravity is on every sensor: y'' does not see it.
-TEST(Identifier, DoesNotSeeGravity) {
+TEST(Estimator, DoesNotSeeGravity) {
   auto record = laden_record();
   for (Sample& s : record) {
     for (double& a : s.accel_mps2) a += 9.81;
@@ -92,7 +92,7 @@ TEST(Identifier, DoesNotSeeGravity) {
   EXPECT_NEAR(with.stiffness_npm.value / without.stiffness_npm.value, 1.0, 1e-3);
 }
 
-TEST(Identifier, HardlyMindsADrift) {
+TEST(Estimator, HardlyMindsADrift) {
   auto record = laden_record();
   for (Sample& s : record) s.accel_mps2[1] += 0.01 * static_cast<double>(s.tick) / 300.0;
   const Snapshot drifting = identify(record).snapshot;
@@ -101,7 +101,7 @@ TEST(Identifier, HardlyMindsADrift) {
   EXPECT_NEAR(drifting.stiffness_npm.value / clean.stiffness_npm.value, 1.0, 1e-3);
 }
 
-TEST(Identifier, TheWheelsetsAreInterchangeable) {
+TEST(Estimator, TheWheelsetsAreInterchangeable) {
   auto record = laden_record();
   for (Sample& s : record) std::swap(s.accel_mps2[1], s.accel_mps2[2]);
   const Snapshot swapped = identify(record).snapshot;
@@ -109,7 +109,7 @@ TEST(Identifier, TheWheelsetsAreInterchangeable) {
   EXPECT_NEAR(swapped.coulomb_n.value / plain.coulomb_n.value, 1.0, 1e-10);
 }
 
-TEST(Identifier, IsOddInTheMotion) {
+TEST(Estimator, IsOddInTheMotion) {
   auto record = laden_record();
   for (Sample& s : record) {
     for (double& a : s.accel_mps2) a = -a;
@@ -120,9 +120,9 @@ TEST(Identifier, IsOddInTheMotion) {
   EXPECT_EQ(mirrored.curve[2].samples, plain.samples_negative[2]);
 }
 
-TEST(Identifier, ForcesScaleWithTheMovingMass) {
-  IdentifierConfig heavy;
-  heavy.moving_mass_kg = 3.0 * IdentifierConfig{}.moving_mass_kg;
+TEST(Estimator, ForcesScaleWithTheMovingMass) {
+  EstimatorConfig heavy;
+  heavy.moving_mass_kg = 3.0 * EstimatorConfig{}.moving_mass_kg;
   const Snapshot a = identify(laden_record()).snapshot;
   const Snapshot b = identify(laden_record(), heavy).snapshot;
   EXPECT_NEAR(b.coulomb_n.value / a.coulomb_n.value, 3.0, 1e-12);
@@ -132,8 +132,8 @@ TEST(Identifier, ForcesScaleWithTheMovingMass) {
   EXPECT_EQ(b.law_width_mps.value, a.law_width_mps.value);
 }
 
-TEST(Identifier, EveryRowIsInTheStatisticsOnce) {
-  const auto identifier = std::make_unique<Identifier>(IdentifierConfig{});
+TEST(Estimator, EveryRowIsInTheStatisticsOnce) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
   for (const Sample& s : laden_record()) identifier->update(s);
   identifier->finish();
   const auto statistics = std::make_unique<Statistics>();
@@ -148,12 +148,12 @@ TEST(Identifier, EveryRowIsInTheStatisticsOnce) {
   EXPECT_EQ(entries, total);
 }
 
-TEST(Identifier, TwoHalvesMergeToTheWhole) {
+TEST(Estimator, TwoHalvesMergeToTheWhole) {
   const auto whole = std::make_unique<Statistics>();
   const auto first = std::make_unique<Statistics>();
   const auto second = std::make_unique<Statistics>();
-  const auto one = std::make_unique<Identifier>(IdentifierConfig{});
-  const auto parted = std::make_unique<Identifier>(IdentifierConfig{});
+  const auto one = std::make_unique<Estimator>(EstimatorConfig{});
+  const auto parted = std::make_unique<Estimator>(EstimatorConfig{});
   for (std::size_t i = 0; i < laden_record().size(); ++i) {
     if (i == 12345) {
       parted->export_statistics(*first);
@@ -191,10 +191,10 @@ TEST(Identifier, TwoHalvesMergeToTheWhole) {
   EXPECT_NEAR(a.coulomb_n.std / b.coulomb_n.std, 1.0, 0.5);
 }
 
-TEST(Identifier, StatisticsOfAnotherBasisAreRefused) {
-  const auto header_of = [](const IdentifierConfig& config) {
+TEST(Estimator, StatisticsOfAnotherBasisAreRefused) {
+  const auto header_of = [](const EstimatorConfig& config) {
     const auto out = std::make_unique<Statistics>();
-    const auto identifier = std::make_unique<Identifier>(config);
+    const auto identifier = std::make_unique<Estimator>(config);
     identifier->export_statistics(*out);
     return out->header.basis_hash;
   };
@@ -203,7 +203,7 @@ TEST(Identifier, StatisticsOfAnotherBasisAreRefused) {
   EXPECT_NE(plain, header_of({.sample_rate_hz = 200.0}));
   EXPECT_NE(plain, header_of({.velocity_corner_hz = 1.0}));
   EXPECT_NE(plain, header_of({.anti_alias = {.corner_hz = 90.0}}));
-  IdentifierConfig nodes;
+  EstimatorConfig nodes;
   nodes.curve_nodes_mps[3] += 1e-6;
   EXPECT_NE(plain, header_of(nodes));
 }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "dampline/identifier.hpp"
+#include "dampline/damping/estimator.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
@@ -37,9 +37,9 @@ struct Identified {
 };
 
 /// Runs a record; `before(i)` is called ahead of sample i.
-inline Identified identify(const std::vector<Sample>& record, const IdentifierConfig& config = {},
-                           const std::function<void(Identifier&, std::size_t)>& before = {}) {
-  const auto identifier = std::make_unique<Identifier>(config);
+inline Identified identify(const std::vector<Sample>& record, const EstimatorConfig& config = {},
+                           const std::function<void(Estimator&, std::size_t)>& before = {}) {
+  const auto identifier = std::make_unique<Estimator>(config);
   Identified out;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (before) before(*identifier, i);

@@ -30,7 +30,7 @@ TEST_P(AccuracyAfter60s, IsWithinTheStatedBounds) {
   EXPECT_FALSE(e.snapshot.std_is_lower_bound);
 }
 
-TEST(Identifier, CannotTellAnAsymmetryFromAccelerations) {
+TEST(Estimator, CannotTellAnAsymmetryFromAccelerations) {
   bench::AccuracyCase even = bench::standard_cases()[0];
   bench::AccuracyCase odd = even;
   even.simulation.truck.friction_positive_n = even.simulation.truck.friction_negative_n = 8356.0;
@@ -42,7 +42,7 @@ TEST(Identifier, CannotTellAnAsymmetryFromAccelerations) {
   EXPECT_NEAR(a.stiffness_npm.value / b.stiffness_npm.value, 1.0, 0.005);
 }
 
-TEST(Identifier, TellsFrictionLevelsApart) {
+TEST(Estimator, TellsFrictionLevelsApart) {
   bench::AccuracyCase more = bench::standard_cases()[0];
   more.simulation.truck.friction_scale = 1.3;
   EXPECT_LE(std::abs(bench::run_case(more, 5, {60.0}).at[0].coulomb), 0.01);

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "sim_hw/butterworth.hpp"
-#include "tests/identifier/record.hpp"
+#include "tests/estimator/record.hpp"
 #include "tests/steps.hpp"
 
 namespace dampline {
@@ -66,10 +66,10 @@ class IdentifierAtRate : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Rates, IdentifierAtRate, testing::Values(150.0, 200.0, 300.0, 400.0));
 
 TEST_P(IdentifierAtRate, FindsThePrescribedParameters) {
-  const IdentifierConfig config{.sample_rate_hz = GetParam(),
-                                .moving_mass_kg = kMassKg,
-                                .anti_alias = {.corner_hz = GetParam() / 3.0}};
-  ASSERT_TRUE(Identifier::check(config).ok());
+  const EstimatorConfig config{.sample_rate_hz = GetParam(),
+                               .moving_mass_kg = kMassKg,
+                               .anti_alias = {.corner_hz = GetParam() / 3.0}};
+  ASSERT_TRUE(Estimator::check(config).ok());
   const Snapshot s = identify(prescribed(GetParam(), 100.0), config).snapshot;
   ASSERT_TRUE(s.valid);
   EXPECT_NEAR(s.coulomb_n.value / kCoulombN, 1.0, 0.015);
@@ -79,8 +79,8 @@ TEST_P(IdentifierAtRate, FindsThePrescribedParameters) {
 }
 
 TEST_P(IdentifierAtRate, LosesNoRow) {
-  const IdentifierConfig config{.sample_rate_hz = GetParam(), .moving_mass_kg = kMassKg};
-  const auto identifier = std::make_unique<Identifier>(config);
+  const EstimatorConfig config{.sample_rate_hz = GetParam(), .moving_mass_kg = kMassKg};
+  const auto identifier = std::make_unique<Estimator>(config);
   for (const Sample& s : prescribed(GetParam(), 70.0)) identifier->update(s);
   identifier->finish();
   const auto statistics = std::make_unique<Statistics>();
