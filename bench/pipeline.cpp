@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/identify/can_channels.hpp"
-#include "dampline/damping/curve_nodes.hpp"
+#include "dampline/basis/columns.hpp"
 #include "dampline/density/histogram.hpp"
 #include "dampline/density/joint_histogram.hpp"
 #include "dampline/motion/drift_free_integral.hpp"

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/guard/fourier.hpp"
 #include "dampline/motion/anti_alias.hpp"
+#include "dampline/numeric/fourier.hpp"
 #include "dampline/sample.hpp"
 
 namespace dampline::app {

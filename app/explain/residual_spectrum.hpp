@@ -8,7 +8,7 @@
 #include "app/explain/evidence_point.hpp"
 #include "app/explain/signature.hpp"
 #include "app/run/evidence.hpp"
-#include "dampline/guard/fourier.hpp"
+#include "dampline/numeric/fourier.hpp"
 
 namespace dampline::app {
 

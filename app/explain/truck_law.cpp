@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "app/explain/truck_points.hpp"
-#include "dampline/damping/smooth_sign.hpp"
+#include "dampline/basis/smooth_sign.hpp"
 
 namespace dampline::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "dampline/density/fokker_planck.hpp"
-#include "dampline/density/small_cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 #include "sim_hw/presets.hpp"
 #include "sim_hw/white_input.hpp"
 
@@ -113,7 +113,7 @@ void add_branches(sim::Load load, const char* name, Figures& figures) {
 /// by which its mean square misses the input's level.
 double literal_modulation(const sim::WhiteInputConfig& config, std::uint64_t xi_seed) {
   constexpr int kTerms = static_cast<int>(Modulation::kTerms);
-  using System = SmallCholesky<kTerms>;
+  using System = Cholesky<kTerms>;
   System::Matrix gram = System::Matrix::Zero();
   System::Vector right = System::Vector::Zero();
   sim::WhiteInput source{config};

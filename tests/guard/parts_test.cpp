@@ -7,9 +7,9 @@
 
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/code_watch.hpp"
-#include "dampline/guard/fourier.hpp"
-#include "dampline/guard/log_histogram.hpp"
 #include "dampline/guard/spike_watch.hpp"
+#include "dampline/numeric/fourier.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 #include "sim_hw/random.hpp"
 
 namespace dampline {

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "dampline/rig/log_histogram.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 #include "dampline/rig/rig_columns.hpp"
 #include "dampline/rig/rig_config.hpp"
 #include "dampline/rig/rig_identifier.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/wavelet/law_average.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "dampline/damping/estimator.hpp"
+#include "dampline/wavelet/row_builder.hpp"
 
 namespace dampline {
 namespace {

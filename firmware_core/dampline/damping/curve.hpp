@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <array>
-
 #include "dampline/estimate/law_profile.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {
-
-/// Right ends of the segments, increasing, m/s.
-using CurveNodes = std::array<double, kCurveSegments>;
 
 /// An odd broken line over |v| with a jump at zero, per unit of moving mass:
 ///   F(v) / M = sign(v) [jump g(v / w*) + sum_i slope_i ramp_i(|v|)].

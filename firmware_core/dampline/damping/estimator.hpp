@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/damping/curve_nodes.hpp"
-#include "dampline/damping/law_columns.hpp"
+#include "dampline/basis/columns.hpp"
 #include "dampline/estimate/block_ledger.hpp"
 #include "dampline/estimate/block_store.hpp"
 #include "dampline/estimate/statistics.hpp"
@@ -17,7 +16,6 @@
 #include "dampline/sample.hpp"
 #include "dampline/sample/screen.hpp"
 #include "dampline/snapshot.hpp"
-#include "dampline/wavelet/law_average.hpp"
 #include "dampline/wavelet/row_builder.hpp"
 
 namespace dampline {

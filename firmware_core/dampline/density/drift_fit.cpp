@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "dampline/density/small_cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 namespace {
@@ -76,8 +76,8 @@ struct Equations {
 
 /// Normal equations of the unknowns, and their solution.
 struct Normal {
-  using Matrix = SmallCholesky<kMaxUnknowns>::Matrix;
-  using Vector = SmallCholesky<kMaxUnknowns>::Vector;
+  using Matrix = Cholesky<kMaxUnknowns>::Matrix;
+  using Vector = Cholesky<kMaxUnknowns>::Vector;
   Matrix matrix = Matrix::Zero();
   Vector right = Vector::Zero();
 };
@@ -112,7 +112,7 @@ bool solve_level(const Normal& normal, int unknowns, DriftFit& fit) noexcept {
 
 bool solve_curve(const Normal& normal, std::size_t segments, DriftFit& fit) noexcept {
   const int unknowns = 2 * (static_cast<int>(segments) + 1);
-  SmallCholesky<kMaxUnknowns> cholesky;
+  Cholesky<kMaxUnknowns> cholesky;
   if (!cholesky.factor(normal.matrix, unknowns)) return false;
   Normal::Vector alpha = normal.right;
   cholesky.solve(alpha);
@@ -159,7 +159,7 @@ void add_bin(const DriftMoments& m, const Lines& tests, const Lines& curve, doub
 
 /// Generalised least squares: N = X' G^-1 X with G = L L'.
 bool reduce(const Equations& equations, int tests, int unknowns, Normal& normal) noexcept {
-  SmallCholesky<kMaxTests> cholesky;
+  Cholesky<kMaxTests> cholesky;
   if (!cholesky.factor(equations.weight, tests)) return false;
   Eigen::Matrix<double, kMaxTests, kMaxUnknowns> whitened = equations.design;
   for (int j = 0; j < unknowns; ++j) {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/damping/curve_nodes.hpp"
+#include "dampline/basis/columns.hpp"
 #include "dampline/density/block_powers.hpp"
 #include "dampline/density/drift_fit.hpp"
 #include "dampline/density/drift_sums.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 namespace {

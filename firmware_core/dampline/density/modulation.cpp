@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dampline/density/small_cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 
@@ -19,8 +19,8 @@ void Modulation::scale(double factor) noexcept {
 
 Modulation::Polynomial Modulation::shape() const noexcept {
   constexpr int kSize = static_cast<int>(kTerms);
-  SmallCholesky<kSize>::Matrix gram;
-  SmallCholesky<kSize>::Vector right;
+  Cholesky<kSize>::Matrix gram;
+  Cholesky<kSize>::Vector right;
   for (std::size_t i = 0; i < kTerms; ++i) {
     for (std::size_t j = 0; j < kTerms; ++j) {
       gram(static_cast<int>(i), static_cast<int>(j)) = moments_[i + j];
@@ -28,7 +28,7 @@ Modulation::Polynomial Modulation::shape() const noexcept {
     right[static_cast<int>(i)] = squares_[i];
   }
   Polynomial out{1.0};
-  SmallCholesky<kSize> cholesky;
+  Cholesky<kSize> cholesky;
   if (!(squares_[0] > 0.0) || !cholesky.factor(gram, kSize)) return out;
   cholesky.solve(right);
   const double mean = squares_[0] / moments_[0];

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "dampline/density/small_cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 namespace {
 
 constexpr int kUnknowns = static_cast<int>(kPaperSegments) + 1;  // the last: the offset
 constexpr double kReachShare = 0.99;
-using System = SmallCholesky<kUnknowns>;
+using System = Cholesky<kUnknowns>;
 
 /// p2 and its derivatives at the bins' centres.
 struct SmoothDensity {

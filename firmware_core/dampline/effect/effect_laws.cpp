@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/damping/smooth_sign.hpp"
+#include "dampline/basis/smooth_sign.hpp"
 
 namespace dampline::effect {
 namespace {

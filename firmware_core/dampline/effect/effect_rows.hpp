@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
+#include "dampline/basis/window_bank.hpp"
 #include "dampline/effect/effect_laws.hpp"
 #include "dampline/effect/gram.hpp"
 #include "dampline/effect/raw_ring.hpp"
-#include "dampline/wavelet/window_bank.hpp"
 
 namespace dampline::effect {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/basis/window_bank.hpp"
 #include "dampline/effect/columns.hpp"
-#include "dampline/wavelet/window_bank.hpp"
 
 namespace dampline::effect {
 

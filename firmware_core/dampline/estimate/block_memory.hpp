@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "dampline/estimate/block_store.hpp"
-#include "dampline/estimate/cholesky.hpp"
-#include "dampline/estimate/information.hpp"
 #include "dampline/estimate/weighted_fit.hpp"
+#include "dampline/numeric/cholesky.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/result.hpp"
 
 namespace dampline {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 

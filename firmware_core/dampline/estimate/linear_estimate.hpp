@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 
 namespace dampline {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "dampline/estimate/columns.hpp"
+#include "dampline/basis/columns.hpp"
 
 namespace dampline {
 

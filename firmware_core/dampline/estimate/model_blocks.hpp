@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 
 namespace dampline {
 

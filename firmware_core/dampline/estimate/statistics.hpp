@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "dampline/estimate/columns.hpp"
+#include "dampline/basis/columns.hpp"
+#include "dampline/basis/window_bank.hpp"
 #include "dampline/snapshot.hpp"
-#include "dampline/wavelet/window_bank.hpp"
 
 namespace dampline {
 

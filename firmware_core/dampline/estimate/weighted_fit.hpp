@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "dampline/estimate/cholesky.hpp"
 #include "dampline/estimate/mapped_columns.hpp"
 #include "dampline/estimate/statistics.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 

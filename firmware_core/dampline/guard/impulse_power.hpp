@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dampline/guard/log_histogram.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 
 namespace dampline {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dampline/guard/log_histogram.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 
 namespace dampline {
 

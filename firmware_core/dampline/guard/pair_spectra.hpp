@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/guard/fourier.hpp"
+#include "dampline/numeric/fourier.hpp"
 #include "dampline/sample.hpp"
 
 namespace dampline {

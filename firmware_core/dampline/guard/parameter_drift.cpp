@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "dampline/estimate/cholesky.hpp"
 #include "dampline/estimate/law_profile.hpp"
 #include "dampline/guard/block_series.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 namespace {

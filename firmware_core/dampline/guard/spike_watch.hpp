@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/guard/log_histogram.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 
 namespace dampline {
 

@@ -6,8 +6,8 @@
 
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/fault_log.hpp"
-#include "dampline/guard/log_histogram.hpp"
 #include "dampline/guard/slip_finder.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 
 namespace dampline {
 

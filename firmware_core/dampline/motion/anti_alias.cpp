@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "dampline/estimate/cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 namespace {

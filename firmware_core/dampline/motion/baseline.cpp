@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "dampline/motion/wide_dot.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 namespace {

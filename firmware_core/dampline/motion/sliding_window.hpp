@@ -3,8 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "dampline/motion/wide_dot.hpp"
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 

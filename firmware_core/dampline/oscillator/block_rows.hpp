@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "dampline/damping/sensitivity.hpp"
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/oscillator/gram_polynomials.hpp"
 
 namespace dampline {

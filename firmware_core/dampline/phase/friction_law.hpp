@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/phase/friction_map.hpp"
 #include "dampline/snapshot.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/phase/phase_point.hpp"
 #include "dampline/result.hpp"
 #include "dampline/snapshot.hpp"

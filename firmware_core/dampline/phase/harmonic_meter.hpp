@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/phase/phase_point.hpp"
 #include "dampline/phase/planarity_verdict.hpp"
 

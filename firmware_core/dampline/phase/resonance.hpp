@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {

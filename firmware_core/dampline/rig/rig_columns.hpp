@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/rig/rig_config.hpp"
 #include "dampline/rig/rig_motion.hpp"
 #include "dampline/rig/smooth_sign.hpp"

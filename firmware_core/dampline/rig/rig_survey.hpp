@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dampline/rig/log_histogram.hpp"
+#include "dampline/numeric/log_histogram.hpp"
 #include "dampline/rig/rig_config.hpp"
 #include "dampline/rig/rig_sample.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "dampline/damping/models.hpp"
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/result.hpp"
 #include "dampline/wavelet/sign_gate.hpp"
 #include "dampline/wavelet/stencil.hpp"

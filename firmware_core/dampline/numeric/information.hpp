@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/estimate/information.hpp"
+#include "dampline/numeric/information.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "dampline/estimate/cholesky.hpp"
+#include "dampline/numeric/cholesky.hpp"
 
 namespace dampline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/wavelet/window_bank.hpp"
+#include "dampline/basis/window_bank.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/damping/smooth_sign.hpp"
+#include "dampline/basis/smooth_sign.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/damping/law_columns.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "dampline/basis/columns.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "tests/steps.hpp"
 

@@ -5,10 +5,18 @@
 #include <cmath>
 #include <cstddef>
 
-#include "dampline/damping/smooth_sign.hpp"
+#include "dampline/basis/smooth_sign.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {
+
+/// Right ends of the segments of the damping curve, increasing, m/s; the last segment goes on
+/// without end.
+using CurveNodes = std::array<double, kCurveSegments>;
+/// Fixed in advance, so that statistics of different runs have the same basis and merge.
+inline constexpr CurveNodes kDefaultCurveNodesMps{3.0e-3,  5.5e-3,  8.0e-3,  11.0e-3,
+                                                  14.5e-3, 19.0e-3, 26.0e-3, 40.0e-3};
 
 inline constexpr std::size_t kLawWidths = 10;
 
@@ -32,8 +40,7 @@ class LawColumns {
   /// The columns as they are stored; what lies between signs and ramps is zero.
   using Lanes = Eigen::Array<float, kLanes, 1>;
 
-  /// `nodes_mps`: right ends of the segments, increasing. The last segment goes on without end.
-  explicit LawColumns(const std::array<double, kCurveSegments>& nodes_mps) noexcept {
+  explicit LawColumns(const CurveNodes& nodes_mps) noexcept {
     double left = 0.0;
     for (std::size_t i = 0; i < kCurveSegments; ++i) {
       const double length = i + 1 < kCurveSegments ? nodes_mps[i] - left : 1e3;
@@ -85,5 +92,16 @@ class LawColumns {
   std::array<float, kRamps> left_mps_{};
   std::array<float, kRamps> length_mps_{};
 };
+
+/// The columns of a Galerkin row, per unit of moving mass:
+///   t = (k/M) X_k + (c/M) X_c + sum_i (F_i/M) X_i,   t = -<psi, z_b''>
+/// First the law's columns (LawColumns), then these:
+inline constexpr int kStiffnessColumn = LawColumns::kCount;
+inline constexpr int kViscousColumn = kStiffnessColumn + 1;
+inline constexpr int kTargetColumn = kViscousColumn + 1;
+inline constexpr int kRowColumns = kTargetColumn + 1;
+
+using RowFactor = Information<kRowColumns>;
+using GalerkinRow = RowFactor::Row;
 
 }  // namespace dampline

@@ -2,19 +2,21 @@
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 
 namespace dampline {
 
-/// Cholesky factor of the leading `size` rows and columns of a positive definite matrix, for
-/// problems whose size the data decide. Plain loops: no reference to the heap.
+/// Cholesky factor L of the leading `size` rows and columns of a positive definite matrix. Plain
+/// loops: Eigen's solvers fall back to the heap for large matrices and bring that reference into
+/// the library.
 template <int Max>
-class SmallCholesky {
+class Cholesky {
  public:
   using Matrix = Eigen::Matrix<double, Max, Max>;
   using Vector = Eigen::Matrix<double, Max, 1>;
 
-  /// False when the matrix is not positive definite to within rounding.
-  [[nodiscard]] bool factor(const Matrix& a, int size) noexcept {
+  /// False when a pivot is not above `tolerance` times its diagonal element.
+  [[nodiscard]] bool factor(const Matrix& a, int size, double tolerance = 1e-12) noexcept {
     size_ = size;
     for (int j = 0; j < size; ++j) {
       for (int i = j; i < size; ++i) {
@@ -24,7 +26,7 @@ class SmallCholesky {
           l_(i, j) = sum / l_(j, j);
           continue;
         }
-        if (!(sum > kTolerance * a(j, j))) return false;
+        if (!(sum > tolerance * a(j, j))) return false;
         l_(j, j) = std::sqrt(sum);
       }
     }
@@ -52,9 +54,20 @@ class SmallCholesky {
   }
 
  private:
-  static constexpr double kTolerance = 1e-12;
   Matrix l_ = Matrix::Zero();
   int size_{0};
 };
+
+/// Solves A x = b; all NaN where A is not positive definite.
+template <int N>
+Eigen::Matrix<double, N, 1> solve_cholesky(const Eigen::Matrix<double, N, N>& a,
+                                           Eigen::Matrix<double, N, 1> b) noexcept {
+  Cholesky<N> cholesky;
+  if (cholesky.factor(a, N, 0.0))
+    cholesky.solve(b);
+  else
+    b.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return b;
+}
 
 }  // namespace dampline

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstddef>
 
 /// Before a function: compiled a second time for AVX2, where the loader takes that version on a
 /// processor that has it. Both versions do the same operations in the same order on each number
@@ -29,5 +30,9 @@ inline const WideInMemory& wide(const double* first) noexcept {
 inline WideInMemory& wide(double* first) noexcept {
   return *reinterpret_cast<WideInMemory*>(first);
 }
+
+/// Sum of a[i] b[i]: number i goes to lane i % 8, then the lanes are added, and the last count % 4
+/// numbers to that; the same bits on every machine.
+[[nodiscard]] double wide_dot(const double* a, const double* b, std::size_t count) noexcept;
 
 }  // namespace dampline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/fourier.hpp"
+#include "dampline/numeric/fourier.hpp"
 
 #include <algorithm>
 #include <numbers>

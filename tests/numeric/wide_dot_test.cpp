@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/wide_dot.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstddef>
 #include <random>
 #include <vector>
+
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 namespace {

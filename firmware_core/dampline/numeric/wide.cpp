@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/wide_dot.hpp"
-
-#include "dampline/wide.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 
