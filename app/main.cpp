@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <csignal>
-#include <cstdio>
-#include <exception>
 #include <functional>
+#include <string_view>
 
-#include "app/error.hpp"
+#include "app/program.hpp"
 #include "app/run/run_toml.hpp"
 #include "app/verbs/config.hpp"
 #include "app/verbs/explain.hpp"
@@ -17,37 +13,9 @@
 #include "app/verbs/simulate.hpp"
 #include "app/verbs/verify.hpp"
 
-namespace {
-
-constexpr int kRunFailed = 1;
-constexpr int kWrongUsage = 2;
-
-int fail(const char* text, int code) {
-  fmt::print(stderr, "dampline: error: {}\n", text);
-  return code;
-}
-
-int run(const std::function<int()>& action) {
-  try {
-    const int code = action();
-    // A full disk or a closed pipe behind standard output is a failed run, not a success.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return fail("standard output cannot be written", kRunFailed);
-    return code;
-  } catch (const dampline::app::UsageError& error) {
-    return fail(error.what(), kWrongUsage);
-  } catch (const std::exception& error) {
-    return fail(error.what(), kRunFailed);
-  }
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
-  // Both are reported where the write fails, with the file's name.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-
+  if (argc > 1 && std::string_view{argv[1]} == "verify")
+    return dampline::app::exit_code([&] { return dampline::app::run_verify(argv + 1); });
   CLI::App program{
       "Identifies how a freight-car truck dissipates energy, from accelerometers in service"};
   program.name("dampline");
@@ -59,12 +27,7 @@ int main(int argc, char** argv) {
   dampline::app::add_simulate_verb(program, action);
   dampline::app::add_report_verb(program, action);
   dampline::app::add_export_verb(program, action);
-  dampline::app::add_verify_verb(program, action);
+  dampline::app::list_verify_verb(program);
   dampline::app::add_config_verb(program, action);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : kWrongUsage;
-  }
-  return run(action);
+  return dampline::app::run(program, action, argc, argv);
 }

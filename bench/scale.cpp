@@ -19,7 +19,7 @@
 #include "bench/peers/problem.hpp"
 #include "bench/peers/timing.hpp"
 #include "bench/ride.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
 
 namespace dampline::bench {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "dampline/estimate/factor_ring.hpp"
-#include "dampline/estimate/model_selection.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
-#include "dampline/wavelet/coarse_rows.hpp"
+#include "published/wavelet/coarse_rows.hpp"
+#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/model_selection.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
 
 namespace dampline {
 namespace {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <functional>
 
 namespace CLI {
 class App;
@@ -8,8 +7,11 @@ class App;
 
 namespace dampline::app {
 
-/// Adds `dampline verify` to the program. When it is chosen, `action` becomes what to do; it
-/// returns the exit code and throws RunError or UsageError.
-void add_verify_verb(CLI::App& program, std::function<int()>& action);
+/// `dampline verify` in the program's help. What it does is done by a program of its own.
+void list_verify_verb(CLI::App& program);
+
+/// Becomes dampline-verify, which lies beside this program or in ../libexec/dampline; `arguments`
+/// are "verify" and what follows it, as main() has them. Throws RunError where it lies in neither.
+int run_verify(char** arguments);
 
 }  // namespace dampline::app

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "bench/peers/problem.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
 
 #ifdef DAMPLINE_HAS_DLIB
 #include <dlib/svm.h>

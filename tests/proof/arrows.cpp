@@ -22,17 +22,20 @@ struct Room {
 
 const std::vector<Room>& rooms() {
   static const std::vector<Room> kRooms{
+      {"firmware_core/published/", {"dampline/", "Eigen/", "published/"}, false},
       {"firmware_core/", {"dampline/", "Eigen/"}, false},
       {"hal/", {"dampline/", "hal/"}, true},
       {"drivers/", {"dampline/", "hal/", "drivers/"}, true},
       {"sim_hw/", {"dampline/", "hal/", "sim_hw/"}, true},
+      {"app/verify/", {"dampline/", "published/", "hal/", "sim_hw/", "app/"}, true},
       {"app/", {"dampline/", "hal/", "drivers/", "sim_hw/", "app/"}, true}};
   return kRooms;
 }
 
 bool is_ours(std::string_view include) {
-  constexpr std::array<std::string_view, 8> kOurs{
-      "dampline/", "hal/", "drivers/", "sim_hw/", "app/", "tests/", "bench/", "firmware_core/"};
+  constexpr std::array<std::string_view, 9> kOurs{"dampline/", "published/", "hal/",
+                                                  "drivers/",  "sim_hw/",    "app/",
+                                                  "tests/",    "bench/",     "firmware_core/"};
   return include.starts_with('.') || std::any_of(kOurs.begin(), kOurs.end(), [&](auto ours) {
            return include.starts_with(ours);
          });

@@ -25,21 +25,27 @@ TEST(Arrows, AreReportedWhereTheyPointTheWrongWay) {
       {"firmware_core/dampline/b.cpp", "  #  include \"hal/frame_source.hpp\"\n"},
       {"firmware_core/dampline/c.hpp", "#include \"generate/exact_connection.hpp\"\n"},
       {"firmware_core/generate/d.cpp", "#include <vector>\n#include \"app/error.hpp\"\n"},
+      {"firmware_core/dampline/e.hpp", "#include \"published/wavelet/terms.hpp\"\n"},
+      {"firmware_core/published/f.hpp", "#include \"dampline/e.hpp\"\n#include \"sim_hw/x.hpp\"\n"},
       {"hal/clock.hpp", "#include \"drivers/csv.hpp\"\n#include <chrono>\n"},
       {"sim_hw/truck.cpp", "#include \"drivers/csv.hpp\"\n#include \"../app/main.hpp\"\n"},
       {"drivers/csv.cpp", "#include \"sim_hw/truck.hpp\"\n#include \"hal/frame_source.hpp\"\n"},
-      {"app/main.cpp", "#include \"drivers/csv.hpp\"\n#include \"tests/x.hpp\"\n"}};
-  EXPECT_THAT(wrong_arrows(files),
-              ElementsAre("firmware_core/dampline/a.hpp includes vector",
-                          "firmware_core/dampline/b.cpp includes hal/frame_source.hpp",
-                          "firmware_core/dampline/c.hpp includes generate/exact_connection.hpp",
-                          "firmware_core/generate/d.cpp includes vector",
-                          "firmware_core/generate/d.cpp includes app/error.hpp",
-                          "hal/clock.hpp includes drivers/csv.hpp",
-                          "sim_hw/truck.cpp includes drivers/csv.hpp",
-                          "sim_hw/truck.cpp includes ../app/main.hpp",
-                          "drivers/csv.cpp includes sim_hw/truck.hpp",
-                          "app/main.cpp includes tests/x.hpp"));
+      {"app/verify/main.cpp", "#include \"published/f.hpp\"\n#include \"drivers/csv.hpp\"\n"},
+      {"app/main.cpp", "#include \"published/f.hpp\"\n#include \"tests/x.hpp\"\n"}};
+  EXPECT_THAT(
+      wrong_arrows(files),
+      ElementsAre(
+          "firmware_core/dampline/a.hpp includes vector",
+          "firmware_core/dampline/b.cpp includes hal/frame_source.hpp",
+          "firmware_core/dampline/c.hpp includes generate/exact_connection.hpp",
+          "firmware_core/generate/d.cpp includes vector",
+          "firmware_core/generate/d.cpp includes app/error.hpp",
+          "firmware_core/dampline/e.hpp includes published/wavelet/terms.hpp",
+          "firmware_core/published/f.hpp includes sim_hw/x.hpp",
+          "hal/clock.hpp includes drivers/csv.hpp", "sim_hw/truck.cpp includes drivers/csv.hpp",
+          "sim_hw/truck.cpp includes ../app/main.hpp", "drivers/csv.cpp includes sim_hw/truck.hpp",
+          "app/verify/main.cpp includes drivers/csv.hpp", "app/main.cpp includes published/f.hpp",
+          "app/main.cpp includes tests/x.hpp"));
 }
 
 }  // namespace

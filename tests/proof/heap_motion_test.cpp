@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <memory>
 
-#include "dampline/estimate/factor_ring.hpp"
-#include "dampline/estimate/model_selection.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
-#include "dampline/estimate/sequential_windows.hpp"
-#include "dampline/wavelet/coarse_rows.hpp"
+#include "published/wavelet/coarse_rows.hpp"
+#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/model_selection.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
+#include "published/wavelet/sequential_windows.hpp"
 #include "tests/proof/heap_hook.hpp"
 
 namespace dampline::proof {

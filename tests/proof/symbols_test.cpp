@@ -17,6 +17,7 @@ TEST(CoreLibrary, NeedsNothingThatAllocatesThrowsPrintsOrAsksTheSystem) {
   ASSERT_THAT(needed_symbols(DAMPLINE_CORE_ARCHIVE), Contains("memcpy"))
       << "the list of symbols is not that of a library with code in it";
   EXPECT_THAT(forbidden_symbols(DAMPLINE_CORE_ARCHIVE), IsEmpty());
+  EXPECT_THAT(forbidden_symbols(DAMPLINE_PUBLISHED_ARCHIVE), IsEmpty());
 }
 #endif
 

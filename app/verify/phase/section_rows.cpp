@@ -6,7 +6,7 @@
 
 #include "app/verify/phase/rows.hpp"
 #include "app/verify/phase/studies.hpp"
-#include "dampline/phase/section_means.hpp"
+#include "published/phase/section_means.hpp"
 
 namespace dampline::app {
 namespace {

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "dampline/phase/friction_law.hpp"
-#include "dampline/phase/friction_map.hpp"
-#include "dampline/phase/planarity.hpp"
-#include "dampline/phase/resonance.hpp"
-#include "dampline/phase/scaling.hpp"
-#include "sim_hw/phase/section_sweep.hpp"
+#include "app/verify/phase/section_sweep.hpp"
+#include "published/phase/friction_law.hpp"
+#include "published/phase/friction_map.hpp"
+#include "published/phase/planarity.hpp"
+#include "published/phase/resonance.hpp"
+#include "published/phase/scaling.hpp"
 
 namespace dampline::app {
 

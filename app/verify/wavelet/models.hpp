@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "dampline/damping/models.hpp"
+#include "published/wavelet/models.hpp"
 
 /// The models of the published cases, from the core's vocabulary.
 namespace dampline::app {

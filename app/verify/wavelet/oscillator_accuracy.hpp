@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/oscillator/accelerometer_run.hpp"
 #include "app/verify/wavelet/oscillator_case.hpp"
-#include "sim_hw/oscillator/accelerometer_run.hpp"
 
 namespace dampline::app {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/oscillator/accelerometer_run.hpp"
 #include "app/verify/wavelet/models.hpp"
-#include "dampline/oscillator/oscillator_identifier.hpp"
-#include "sim_hw/oscillator/accelerometer_run.hpp"
+#include "published/oscillator/oscillator_identifier.hpp"
 
 namespace dampline::app {
 

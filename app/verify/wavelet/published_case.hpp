@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim_hw/reference/chain.hpp"
+#include "app/verify/reference/chain.hpp"
 
 namespace dampline::app {
 

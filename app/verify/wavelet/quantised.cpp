@@ -7,7 +7,7 @@
 #include "app/verify/wavelet/models.hpp"
 #include "app/verify/wavelet/properties.hpp"
 #include "app/verify/wavelet/recompute.hpp"
-#include "dampline/wavelet/coarse_rows.hpp"
+#include "published/wavelet/coarse_rows.hpp"
 
 namespace dampline::app {
 namespace {

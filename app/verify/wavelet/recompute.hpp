@@ -11,9 +11,9 @@
 #include "app/verify/wavelet/figures.hpp"
 #include "app/verify/wavelet/published_case.hpp"
 #include "app/verify/wavelet/rows.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
-#include "dampline/estimate/sequential_windows.hpp"
-#include "dampline/wavelet/daubechies.hpp"
+#include "published/wavelet/daubechies.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
+#include "published/wavelet/sequential_windows.hpp"
 
 namespace dampline::app {
 

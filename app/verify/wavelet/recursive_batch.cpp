@@ -8,9 +8,9 @@
 #include "app/verify/wavelet/properties.hpp"
 #include "app/verify/wavelet/published_case.hpp"
 #include "app/verify/wavelet/rows.hpp"
-#include "dampline/estimate/factor_ring.hpp"
-#include "dampline/estimate/recursive_estimate.hpp"
-#include "dampline/wavelet/daubechies.hpp"
+#include "published/wavelet/daubechies.hpp"
+#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/recursive_estimate.hpp"
 
 namespace dampline::app {
 namespace {

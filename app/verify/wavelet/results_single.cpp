@@ -4,7 +4,7 @@
 #include "app/verify/wavelet/case_results.hpp"
 #include "app/verify/wavelet/models.hpp"
 #include "app/verify/wavelet/recompute.hpp"
-#include "dampline/wavelet/product_rows.hpp"
+#include "published/wavelet/product_rows.hpp"
 
 namespace dampline::app {
 

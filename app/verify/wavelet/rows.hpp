@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "dampline/wavelet/motion_rows.hpp"
-#include "sim_hw/reference/cooper_verner.hpp"
-#include "sim_hw/reference/trajectory.hpp"
+#include "app/verify/reference/cooper_verner.hpp"
+#include "app/verify/reference/trajectory.hpp"
+#include "published/wavelet/motion_rows.hpp"
 
 namespace dampline::app {
 

@@ -9,8 +9,8 @@
 
 #include "app/verify/wavelet/figures.hpp"
 #include "app/verify/wavelet/rows.hpp"
-#include "dampline/estimate/model_selection.hpp"
-#include "dampline/wavelet/daubechies.hpp"
+#include "published/wavelet/daubechies.hpp"
+#include "published/wavelet/model_selection.hpp"
 
 namespace dampline::app {
 

@@ -7,8 +7,8 @@
 #include "app/verify/wavelet/properties.hpp"
 #include "app/verify/wavelet/published_case.hpp"
 #include "app/verify/wavelet/rows.hpp"
-#include "dampline/estimate/factor_ring.hpp"
-#include "dampline/wavelet/daubechies.hpp"
+#include "published/wavelet/daubechies.hpp"
+#include "published/wavelet/factor_ring.hpp"
 
 namespace dampline::app {
 namespace {

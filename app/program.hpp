@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+#include "app/error.hpp"
+
+namespace dampline::app {
+
+/// Prints the error and returns the exit code.
+inline int fail(const char* text, int code) {
+  fmt::print(stderr, "dampline: error: {}\n", text);
+  return code;
+}
+
+/// The action's exit code: 0, or 1 where the run failed, 2 for a wrong usage.
+inline int exit_code(const std::function<int()>& action) {
+  constexpr int kRunFailed = 1;
+  try {
+    const int code = action();
+    // A full disk or a closed pipe behind standard output is a failed run, not a success.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return fail("standard output cannot be written", kRunFailed);
+    return code;
+  } catch (const UsageError& error) {
+    return fail(error.what(), 2);
+  } catch (const std::exception& error) {
+    return fail(error.what(), kRunFailed);
+  }
+}
+
+/// What main() does: parses the command line, by which a verb sets `action`, and acts.
+inline int run(CLI::App& program, const std::function<int()>& action, int argc, char** argv) {
+  // Both are reported where the write fails, with the file's name.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  }
+  return exit_code(action);
+}
+
+}  // namespace dampline::app
