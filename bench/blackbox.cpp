@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "drivers/blackbox/blackbox_source.hpp"
-#include "drivers/blackbox/blackbox_writer.hpp"
+#include "drivers/blackbox/source.hpp"
+#include "drivers/blackbox/writer.hpp"
 
 namespace {
 using namespace dampline;

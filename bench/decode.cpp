@@ -14,8 +14,8 @@
 
 #include "dampline/sample/assembler.hpp"
 #include "dampline/sample/screen.hpp"
-#include "drivers/candump/candump_source.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/candump/source.hpp"
+#include "drivers/csv/reader.hpp"
 
 namespace {
 using namespace dampline;

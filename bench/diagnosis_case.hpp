@@ -18,7 +18,7 @@
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/truck_pass.hpp"
 #include "dampline/effect/explainer.hpp"
-#include "drivers/candump/line_writer.hpp"
+#include "drivers/candump/line.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/presets.hpp"

@@ -20,7 +20,7 @@
 #include "dampline/motion/drift_free_integral.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "dampline/wavelet/row_builder.hpp"
-#include "drivers/candump/candump_source.hpp"
+#include "drivers/candump/source.hpp"
 
 namespace dampline::bench {
 namespace {

@@ -19,8 +19,7 @@
 
 #include "bench/chain.hpp"
 #include "bench/ride.hpp"
-#include "drivers/socketcan/message_batch.hpp"
-#include "drivers/socketcan/wire_frame.hpp"
+#include "drivers/socketcan/message.hpp"
 
 namespace dampline::bench {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/blackbox/blackbox_source.hpp"
-#include "drivers/blackbox/blackbox_writer.hpp"
-#include "drivers/blackbox/file_names.hpp"
+#include "drivers/blackbox/shelf.hpp"
+#include "drivers/blackbox/source.hpp"
+#include "drivers/blackbox/writer.hpp"
 
 namespace dampline::testing {
 

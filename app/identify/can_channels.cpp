@@ -9,7 +9,7 @@
 #include "app/error.hpp"
 #include "app/identify/thinner.hpp"
 #include "drivers/dbc/channel.hpp"
-#include "drivers/dbc/dbc.hpp"
+#include "drivers/dbc/parse.hpp"
 #include "sim_hw/nodes.hpp"
 
 namespace dampline::app {

@@ -8,8 +8,8 @@
 #include "app/identify/event_list.hpp"
 #include "app/identify/frame_counts.hpp"
 #include "app/identify/sample_feed.hpp"
-#include "drivers/blackbox/blackbox_source.hpp"
-#include "drivers/candump/candump_source.hpp"
+#include "drivers/blackbox/source.hpp"
+#include "drivers/candump/source.hpp"
 
 namespace dampline::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "app/config/config.hpp"
 #include "app/identify/sample_feed.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/csv/reader.hpp"
 
 namespace dampline::app {
 

@@ -13,8 +13,8 @@
 
 #include "app/config/header_name.hpp"
 #include "app/error.hpp"
-#include "drivers/blackbox/file_names.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/blackbox/shelf.hpp"
+#include "drivers/csv/reader.hpp"
 
 namespace dampline::app {
 namespace {

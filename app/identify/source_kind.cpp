@@ -13,9 +13,9 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "drivers/blackbox/file_names.hpp"
-#include "drivers/csv/csv_reader.hpp"
-#include "drivers/socketcan/can_link.hpp"
+#include "drivers/blackbox/shelf.hpp"
+#include "drivers/csv/reader.hpp"
+#include "drivers/socketcan/link.hpp"
 
 namespace dampline::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "drivers/gpiod/gpiod.hpp"
+#include "drivers/gpiod/lines.hpp"
 
 namespace dampline::app {
 namespace {

@@ -12,10 +12,10 @@
 #include "app/run/directory.hpp"
 #include "app/run/parameters_json.hpp"
 #include "app/text/warn.hpp"
-#include "drivers/blackbox/blackbox_writer.hpp"
+#include "drivers/blackbox/writer.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "drivers/socketcan/can_link.hpp"
-#include "drivers/socketcan/socketcan_source.hpp"
+#include "drivers/socketcan/link.hpp"
+#include "drivers/socketcan/source.hpp"
 
 namespace dampline::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "app/error.hpp"
 #include "app/rig/uniform_record.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/csv/reader.hpp"
 
 namespace dampline::app {
 namespace {

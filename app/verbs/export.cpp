@@ -15,8 +15,8 @@
 #include "app/error.hpp"
 #include "app/identify/event_list.hpp"
 #include "app/verbs/text_file.hpp"
-#include "drivers/blackbox/blackbox_source.hpp"
-#include "drivers/candump/line_writer.hpp"
+#include "drivers/blackbox/source.hpp"
+#include "drivers/candump/line.hpp"
 
 namespace dampline::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/verbs/simulate_files.hpp"
 #include "app/verbs/simulate_send.hpp"
 #include "app/verbs/text_file.hpp"
-#include "drivers/candump/line_writer.hpp"
+#include "drivers/candump/line.hpp"
 #include "sim_hw/writers.hpp"
 
 namespace dampline::app {

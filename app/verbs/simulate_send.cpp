@@ -13,7 +13,7 @@
 #include "app/verbs/simulate_files.hpp"
 #include "app/verbs/stop_request.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "drivers/socketcan/can_sender.hpp"
+#include "drivers/socketcan/sender.hpp"
 
 namespace dampline::app {
 namespace {

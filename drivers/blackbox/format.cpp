@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "drivers/blackbox/little_endian.hpp"
 #include "drivers/checksum/crc32c.hpp"
 
 namespace dampline::drivers {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "drivers/blackbox/file_names.hpp"
+#include "drivers/blackbox/shelf.hpp"
 
 namespace dampline::drivers {
 namespace {

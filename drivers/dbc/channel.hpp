@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "dampline/sample/channel.hpp"
-#include "drivers/dbc/dbc.hpp"
+#include "drivers/dbc/parse.hpp"
 
 namespace dampline::drivers {
 

@@ -6,12 +6,10 @@
 namespace dampline::drivers {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-
 std::int64_t read_clock(clockid_t id) noexcept {
   timespec now{};
   static_cast<void>(::clock_gettime(id, &now));  // cannot fail for these two clocks
-  return static_cast<std::int64_t>(now.tv_sec) * kSecondNs + now.tv_nsec;
+  return static_cast<std::int64_t>(now.tv_sec) * hal::kSecondNs + now.tv_nsec;
 }
 
 }  // namespace
@@ -23,8 +21,8 @@ std::int64_t SystemClock::do_realtime_ns() const noexcept { return read_clock(CL
 void SystemClock::do_sleep_until(std::int64_t monotonic_ns) const noexcept {
   if (monotonic_ns <= 0) return;
   timespec until{};
-  until.tv_sec = static_cast<time_t>(monotonic_ns / kSecondNs);
-  until.tv_nsec = static_cast<long>(monotonic_ns % kSecondNs);  // NOLINT the type of tv_nsec
+  until.tv_sec = static_cast<time_t>(monotonic_ns / hal::kSecondNs);
+  until.tv_nsec = static_cast<long>(monotonic_ns % hal::kSecondNs);  // NOLINT the type of tv_nsec
   static_cast<void>(::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr));
 }
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/candump/line_writer.hpp"
+#include "drivers/candump/line.hpp"
 #include "program.hpp"
 #include "tests/blackbox.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/live/lamp.hpp"
-#include "drivers/gpiod/gpiod.hpp"
+#include "drivers/gpiod/lines.hpp"
 #include "tests/bus/gpio_sim.hpp"
 #include "tests/contract/edge_source_contract.hpp"
 

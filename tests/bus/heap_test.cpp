@@ -8,7 +8,7 @@
 #include "app/identify/can_channels.hpp"
 #include "app/live/acquisition.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "drivers/socketcan/socketcan_source.hpp"
+#include "drivers/socketcan/source.hpp"
 #include "tests/bus/bus.hpp"
 #include "tests/bus/live_program.hpp"
 #include "tests/proof/heap_hook.hpp"

@@ -14,7 +14,7 @@
 
 #include "app/identify/can_channels.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "drivers/socketcan/socketcan_source.hpp"
+#include "drivers/socketcan/source.hpp"
 
 namespace dampline::bus {
 namespace {

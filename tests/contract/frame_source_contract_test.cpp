@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/candump/candump_source.hpp"
+#include "drivers/candump/source.hpp"
 #include "hal/frame_source.hpp"
 #include "sim_hw/simulated_source.hpp"
 #include "tests/blackbox.hpp"

@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/csv/reader.hpp"
 #include "hal/row_source.hpp"
 
 namespace dampline {

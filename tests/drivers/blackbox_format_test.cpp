@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "drivers/blackbox/file_names.hpp"
 #include "drivers/blackbox/format.hpp"
+#include "drivers/blackbox/shelf.hpp"
 #include "drivers/checksum/crc32c.hpp"
 #include "tests/blackbox.hpp"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/blackbox/blackbox_source.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/blackbox/source.hpp"
 #include "tests/blackbox.hpp"
 
 namespace dampline::drivers {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/blackbox/blackbox_writer.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/blackbox/writer.hpp"
 #include "tests/blackbox.hpp"
 
 namespace dampline::drivers {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "drivers/candump/line.hpp"
-#include "drivers/candump/line_writer.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/presets.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/candump/candump_source.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "drivers/candump/source.hpp"
 #include "temporary_file.hpp"
 
 namespace dampline::drivers {

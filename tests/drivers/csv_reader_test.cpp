@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/csv/csv_reader.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "drivers/csv/reader.hpp"
 #include "temporary_file.hpp"
 
 namespace dampline::drivers {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/dbc/dbc.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "drivers/dbc/channel.hpp"
+#include "drivers/dbc/parse.hpp"
 #include "temporary_file.hpp"
 
 namespace dampline::drivers {

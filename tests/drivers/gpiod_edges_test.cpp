@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/gpiod/edge_ledger.hpp"
-#include "drivers/gpiod/gpio_text.hpp"
+#include "drivers/gpiod/edges.hpp"
 
 namespace dampline::drivers {
 namespace {

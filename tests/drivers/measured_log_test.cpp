@@ -9,7 +9,7 @@
 
 #include "dampline/guard/guard.hpp"
 #include "dampline/sample/assembler.hpp"
-#include "drivers/candump/candump_source.hpp"
+#include "drivers/candump/source.hpp"
 #include "drivers/dbc/channel.hpp"
 #include "temporary_file.hpp"
 

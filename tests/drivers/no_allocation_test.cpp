@@ -9,8 +9,8 @@
 #include <memory>
 #include <new>
 
-#include "drivers/candump/candump_source.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/candump/source.hpp"
+#include "drivers/csv/reader.hpp"
 #include "temporary_file.hpp"
 #include "tests/blackbox.hpp"
 

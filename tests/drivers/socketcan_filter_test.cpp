@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "drivers/socketcan/frame_filter.hpp"
+#include "drivers/socketcan/socket.hpp"
 
 namespace dampline::drivers {
 namespace {

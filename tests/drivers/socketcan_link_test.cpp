@@ -10,7 +10,7 @@
 
 #include <cstring>
 
-#include "drivers/socketcan/netlink.hpp"
+#include "drivers/socketcan/link.hpp"
 
 namespace dampline::drivers {
 namespace {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "drivers/socketcan/error_frame.hpp"
-#include "drivers/socketcan/wire_frame.hpp"
+#include "drivers/socketcan/message.hpp"
 
 namespace dampline::drivers {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/gpiod/gpiod.hpp"
+#include "drivers/gpiod/lines.hpp"
 #include "tests/contract/edge_source_contract.hpp"
 #include "tests/fault/fault_plan.hpp"
 #include "tests/fault/gpiod_model.hpp"

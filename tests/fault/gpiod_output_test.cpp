@@ -3,7 +3,7 @@
 
 #include <cerrno>
 
-#include "drivers/gpiod/gpiod.hpp"
+#include "drivers/gpiod/lines.hpp"
 #include "tests/fault/fault_plan.hpp"
 #include "tests/fault/gpiod_model.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/socketcan/socketcan_source.hpp"
+#include "drivers/socketcan/source.hpp"
 #include "tests/drivers/manual_clock.hpp"
 #include "tests/fault/can_kernel.hpp"
 #include "tests/fault/fault_plan.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/socketcan/can_sender.hpp"
+#include "drivers/socketcan/sender.hpp"
 #include "tests/drivers/manual_clock.hpp"
 #include "tests/fault/can_kernel.hpp"
 #include "tests/fault/fault_plan.hpp"

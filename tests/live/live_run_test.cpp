@@ -17,7 +17,7 @@
 #include "app/explain/explanation_json.hpp"
 #include "app/identify/can_channels.hpp"
 #include "dampline/sample/assembler.hpp"
-#include "drivers/candump/line_writer.hpp"
+#include "drivers/candump/line.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/presets.hpp"

@@ -14,7 +14,7 @@
 #include "app/rig/rig_terms.hpp"
 #include "dampline/rig/rig_motion.hpp"
 #include "dampline/rig/rig_survey.hpp"
-#include "drivers/csv/csv_reader.hpp"
+#include "drivers/csv/reader.hpp"
 
 namespace dampline::app {
 namespace {
