@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "dampline/damping/estimator.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::bench {

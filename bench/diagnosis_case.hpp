@@ -20,10 +20,10 @@
 #include "dampline/effect/explainer.hpp"
 #include "drivers/candump/line.hpp"
 #include "sim_hw/effects/registry.hpp"
+#include "sim_hw/faults.hpp"
 #include "sim_hw/nodes.hpp"
-#include "sim_hw/presets.hpp"
-#include "sim_hw/random.hpp"
-#include "sim_hw/transport.hpp"
+#include "sim_hw/noise.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::bench {
 

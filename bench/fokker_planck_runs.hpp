@@ -11,7 +11,6 @@
 #include "bench/curve_error.hpp"
 #include "bench/spread.hpp"
 #include "dampline/methods.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 #include "sim_hw/white_input.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "dampline/guard/guard.hpp"
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
-#include "sim_hw/random.hpp"
-#include "sim_hw/record_faults.hpp"
+#include "sim_hw/faults.hpp"
+#include "sim_hw/noise.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::bench {
 

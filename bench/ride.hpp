@@ -10,7 +10,6 @@
 
 #include "dampline/damping/estimator.hpp"
 #include "sim_hw/nodes.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::bench {

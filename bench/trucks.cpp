@@ -16,8 +16,8 @@
 #include "dampline/damping/estimator.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulated_source.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline {
 namespace {

@@ -11,7 +11,6 @@
 #include "bench/spread.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/density/fokker_planck.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 #include "sim_hw/vehicle.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "dampline/can_frame.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {

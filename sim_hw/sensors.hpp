@@ -4,8 +4,7 @@
 #include <cstdint>
 
 #include "dampline/sample.hpp"
-#include "sim_hw/random.hpp"
-#include "sim_hw/section_chain.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::sim {
 

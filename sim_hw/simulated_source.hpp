@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "hal/frame_source.hpp"
+#include "sim_hw/faults.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/simulation.hpp"
-#include "sim_hw/transport.hpp"
 
 namespace dampline::sim {
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim_hw/truck_step.hpp"
-
 namespace dampline::sim {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_hw/truck_step.hpp"
+#include "sim_hw/truck.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "dampline/motion/motion.hpp"
 #include "sim_hw/butterworth.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::sim {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sim_hw/faults.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/simulation.hpp"
-#include "sim_hw/transport.hpp"
 
 namespace CLI {
 class App;

@@ -9,7 +9,7 @@
 #include "app/verbs/simulate.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/faults.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
 namespace {

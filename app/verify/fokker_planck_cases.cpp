@@ -9,7 +9,7 @@
 
 #include "dampline/density/fokker_planck.hpp"
 #include "dampline/numeric/cholesky.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 #include "sim_hw/white_input.hpp"
 
 namespace dampline::app {

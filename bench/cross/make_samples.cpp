@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 int main(int argc, char** argv) {
   using namespace dampline;

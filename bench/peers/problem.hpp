@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::bench {
 

@@ -14,8 +14,6 @@
 namespace dampline::drivers {
 namespace {
 
-constexpr int kMode = 0644;
-
 int result_of(int call) noexcept { return call == 0 ? 0 : errno; }
 
 }  // namespace
@@ -31,7 +29,7 @@ void BlackboxOutput::close() noexcept {
 
 int BlackboxOutput::begin(int directory, const BlackboxHeader& header) noexcept {
   const std::string name = blackbox_file_name(header.file_number);
-  file_ = ::openat(directory, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  file_ = ::openat(directory, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode);
   if (file_ < 0) return errno;
   std::array<std::uint8_t, kRecordsAt> bytes{};
   encode_header(header, bytes);

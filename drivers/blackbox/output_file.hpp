@@ -8,6 +8,8 @@
 
 namespace dampline::drivers {
 
+inline constexpr int kFileMode = 0644;
+
 /// How many records, by what they hold, and their length.
 struct RecordCount {
   std::uint64_t frames{0};

@@ -233,7 +233,6 @@ bool BlackboxWriter::has_space(std::uint64_t beyond_reserve) const noexcept {
 
 namespace {
 
-constexpr int kMode = 0644;
 constexpr std::uint64_t kLeastRotateBytes = 4096;
 
 std::string reason(int error) { return std::generic_category().message(error); }
@@ -277,7 +276,8 @@ std::string holder(int lock) {
 }
 
 int lock_file(int directory, std::string& failed) {
-  const int lock = ::openat(directory, kBlackboxLock.data(), O_RDWR | O_CREAT | O_CLOEXEC, kMode);
+  const int lock =
+      ::openat(directory, kBlackboxLock.data(), O_RDWR | O_CREAT | O_CLOEXEC, kFileMode);
   if (lock < 0) {
     failed = fmt::format("{}: cannot be made: {}", kBlackboxLock, reason(errno));
     return -1;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "hal/clock.hpp"
+
 namespace dampline::drivers {
 namespace {
 
@@ -16,7 +18,7 @@ constexpr std::uint32_t kErrorFlag = 0x20000000U;
 constexpr std::uint32_t kStandardMask = 0x7FFU;
 constexpr std::uint32_t kExtendedMask = 0x1FFFFFFFU;
 constexpr std::int64_t kLatestSecond = 9'223'372'035;  // the last whose nanoseconds fit in 63 bits
-constexpr std::ptrdiff_t kLongestName = 15;
+constexpr std::size_t kLongestName = 15;               // of an interface
 
 constexpr std::array<std::uint8_t, 256> hex_table() {
   std::array<std::uint8_t, 256> table{};
@@ -28,9 +30,9 @@ constexpr std::array<std::uint8_t, 256> hex_table() {
   }
   return table;
 }
-constexpr std::array<std::uint8_t, 256> kHex = hex_table();
+constexpr std::array<std::uint8_t, 256> kHexValues = hex_table();
 
-inline std::uint8_t hex(char c) noexcept { return kHex[static_cast<unsigned char>(c)]; }
+inline std::uint8_t hex(char c) noexcept { return kHexValues[static_cast<unsigned char>(c)]; }
 inline bool is_decimal(char c) noexcept { return static_cast<unsigned char>(c - '0') < 10; }
 
 // A line as candump -l writes it: "(", ten digits, ".", six digits, ")".
@@ -85,7 +87,7 @@ struct Scanner {
     const std::ptrdiff_t decimals = at - begin;
     if ((decimals != 6 && decimals != 9) || *at != ')') return fail("6 or 9 decimals and )");
     ++at;
-    frame.time_ns = seconds * 1'000'000'000 + fraction * (decimals == 6 ? 1000 : 1);
+    frame.time_ns = seconds * hal::kSecondNs + fraction * (decimals == 6 ? 1000 : 1);
     return true;
   }
 
@@ -94,11 +96,11 @@ struct Scanner {
     while (*at == ' ') ++at;  // candump aligns names of unequal length
     const char* begin = at;
     while (*at > ' ' && *at < 0x7F && *at != '#') ++at;
-    const std::ptrdiff_t length = at - begin;
+    const auto length = static_cast<std::size_t>(at - begin);
     if (length < 1 || length > kLongestName || *at != ' ')
       return fail("an interface of 1 to 15 characters and a space");
     ++at;
-    name = {begin, static_cast<std::size_t>(length)};
+    name = {begin, length};
     return true;
   }
 
@@ -189,7 +191,7 @@ void CandumpLine::remember_second(std::string_view line, std::int64_t time_ns) n
   if (std::endian::native != std::endian::little || line.size() < kUsual || line[kPoint] != '.')
     return;
   second_text_ = {eight(line.data()), eight(line.data() + 4)};
-  second_ns_ = time_ns - time_ns % 1'000'000'000;
+  second_ns_ = time_ns - time_ns % hal::kSecondNs;
 }
 
 CandumpFault CandumpLine::parse(std::string_view line, CanFrame& frame) noexcept {
@@ -208,9 +210,7 @@ CandumpFault CandumpLine::parse(std::string_view line, CanFrame& frame) noexcept
 
 namespace {
 
-constexpr std::string_view kHex = "0123456789ABCDEF";
-constexpr std::uint32_t kErrorFlag = 0x20000000U;
-constexpr std::size_t kLongestName = 15;
+constexpr std::string_view kHexDigits = "0123456789ABCDEF";
 constexpr std::size_t kMostClassic = 8;
 constexpr std::size_t kMostFd = 64;
 
@@ -225,7 +225,7 @@ char* put_decimal(char* at, std::uint64_t value, int digits) noexcept {
 
 char* put_hex(char* at, std::uint32_t value, int digits) noexcept {
   for (int i = digits - 1; i >= 0; --i) {
-    at[i] = kHex[value & 0xfU];
+    at[i] = kHexDigits[value & 0xfU];
     value >>= 4U;
   }
   return at + digits;

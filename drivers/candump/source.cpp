@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/text/quote.hpp"
+#include "hal/clock.hpp"
 
 namespace dampline::drivers {
 namespace {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/socketcan/link.hpp"
 
+// Before the kernel's own headers, which then leave its names alone.
+#include <net/if.h>
+// All others.
 #include <fmt/core.h>
 #include <linux/can.h>
 #include <linux/can/netlink.h>
@@ -8,7 +11,6 @@
 #include <linux/if_link.h>
 #include <linux/netlink.h>
 #include <linux/rtnetlink.h>
-#include <net/if.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -57,10 +59,10 @@ void take_controller(int type, Bytes payload, LinkState& link) {
       if (const auto timing = read_as<can_bittiming>(payload)) link.data_bitrate = timing->bitrate;
       break;
     case IFLA_CAN_RESTART_MS:
-      link.restart_ms = read<std::uint32_t>(payload);
+      link.restart_ms = read_as<std::uint32_t>(payload);
       break;
     case IFLA_CAN_STATE:
-      if (const auto state = read<std::uint32_t>(payload); state && *state < CAN_STATE_MAX) {
+      if (const auto state = read_as<std::uint32_t>(payload); state && *state < CAN_STATE_MAX) {
         link.state = static_cast<CanState>(*state);
       }
       break;
@@ -89,7 +91,7 @@ std::optional<LinkState> parse_link(Bytes body) {
   const std::size_t begin = std::min<std::size_t>(NLMSG_ALIGN(sizeof(ifinfomsg)), body.size());
   each_attribute(body.subspan(begin), [&](int type, Bytes payload) {
     if (type == IFLA_IFNAME) link.name = text_of(payload);
-    if (type == IFLA_MTU) link.fd = read<std::uint32_t>(payload).value_or(0) >= CANFD_MTU;
+    if (type == IFLA_MTU) link.fd = read_as<std::uint32_t>(payload).value_or(0) >= CANFD_MTU;
     if (type == IFLA_LINKINFO) take_info(payload, link);
   });
   return link;

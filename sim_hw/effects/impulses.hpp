@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "sim_hw/track.hpp"
 
 namespace dampline::sim {

@@ -8,8 +8,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "sim_hw/effects/tables.hpp"
-
 namespace dampline::sim {
 namespace {
 
@@ -86,8 +84,6 @@ std::optional<std::string> parse_values(std::string_view text, EffectValues& val
   }
   return std::nullopt;
 }
-
-std::span<const Effect> effects() noexcept { return effect_table(); }
 
 std::optional<std::string> add_effect(SimulationConfig& config, std::string_view name,
                                       const EffectValues& values) {

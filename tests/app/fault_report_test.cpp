@@ -8,8 +8,8 @@
 #include "app/identify/truck_run.hpp"
 #include "app/report/faults.hpp"
 #include "app/run/parameters_json.hpp"
-#include "sim_hw/presets.hpp"
-#include "sim_hw/record_faults.hpp"
+#include "sim_hw/faults.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
 namespace {

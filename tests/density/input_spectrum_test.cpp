@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline {
 namespace {

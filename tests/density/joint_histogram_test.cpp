@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "dampline/density/dependence.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline {
 namespace {

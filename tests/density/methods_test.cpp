@@ -6,7 +6,7 @@
 #include <iostream>
 #include <memory>
 
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 #include "tests/density/white_run.hpp"
 
 namespace dampline {

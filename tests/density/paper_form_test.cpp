@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "tests/density/white_run.hpp"
 
 namespace dampline {

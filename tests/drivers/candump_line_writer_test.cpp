@@ -8,7 +8,7 @@
 
 #include "drivers/candump/line.hpp"
 #include "sim_hw/nodes.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::drivers {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::effect {
 namespace {

@@ -13,7 +13,7 @@
 #include "app/explain/frame_noise.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
 namespace {

@@ -8,8 +8,7 @@
 
 #include "dampline/damping/estimator.hpp"
 #include "dampline/guard/group_meter.hpp"
-#include "sim_hw/presets.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline {

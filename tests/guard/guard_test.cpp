@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
-#include "sim_hw/record_faults.hpp"
+#include "sim_hw/faults.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "dampline/damping/estimator.hpp"
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline {

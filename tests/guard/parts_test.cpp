@@ -10,7 +10,7 @@
 #include "dampline/guard/spike_watch.hpp"
 #include "dampline/numeric/fourier.hpp"
 #include "dampline/numeric/log_histogram.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline {
 namespace {

@@ -9,8 +9,8 @@
 #include "app/live/acquisition.hpp"
 #include "app/live/live_explainer.hpp"
 #include "drivers/os/system_clock.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulated_source.hpp"
+#include "sim_hw/simulation.hpp"
 #include "tests/proof/heap_hook.hpp"
 
 namespace dampline::app {

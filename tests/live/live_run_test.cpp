@@ -20,8 +20,8 @@
 #include "drivers/candump/line.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/effects/registry.hpp"
-#include "sim_hw/presets.hpp"
 #include "sim_hw/simulated_source.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dampline/phase/period_meter.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "published/phase/friction_law.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "tests/published/sections.hpp"
 
 namespace dampline {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 #include "tests/published/sections.hpp"
 
 namespace dampline {

@@ -13,9 +13,9 @@
 #include <sstream>
 #include <vector>
 
-#include "sim_hw/presets.hpp"
+#include "sim_hw/faults.hpp"
 #include "sim_hw/simulated_source.hpp"
-#include "sim_hw/transport.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {
 namespace {

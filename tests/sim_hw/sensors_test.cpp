@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "sim_hw/butterworth.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -8,8 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "sim_hw/presets.hpp"
-
 namespace dampline::sim {
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sim_hw/faults.hpp"
-#include "sim_hw/presets.hpp"
+#include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/diagnosis/rig/rig_trials.hpp"
 #include "dampline/rig/rig_motion.hpp"
 #include "dampline/rig/white_noise.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sim_hw/butterworth.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "published/phase/harmonic_meter.hpp"
-#include "sim_hw/random.hpp"
+#include "sim_hw/noise.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "sim_hw/section_chain.hpp"
+#include "sim_hw/noise.hpp"
 
 #include <algorithm>
 #include <cmath>
