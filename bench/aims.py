@@ -68,9 +68,9 @@ def aims(table, f):
         table.add("aims", what, shown(reached), ("met: " if met else "MISSED: ")
                   + ("at least " if least else "at most ") + shown(bound) + note)
 
-    mean, dearest, ns, rls, streaming = f["mean"], f["dearest"], f["ns"], f["rls"], f["streaming"]
+    mean, worst, ns, rls, streaming = f["mean"], f["worst"], f["ns"], f["rls"], f["streaming"]
     aim("chain with densities, instructions a sample", mean.get("chain"), 4000)
-    aim("its dearest sample, instructions", dearest.get("chain"), 60000)
+    aim("its worst-case sample, instructions", worst.get("chain"), 60000)
     least_squares_aims(aim, rls, ns.get("chain/densities"))
     iir = streaming.get("motion: liquid iirfilt_rrrf, fourth order")
     aim("motion, ns an output, beside liquid's filter twice",

@@ -91,19 +91,19 @@ def distribution(table, part, entries):
 
 
 def instructions(table, text):
-    """Instructions of a sample by room: mean, and of the dearest."""
+    """Instructions of a sample by room: mean, and in the worst case."""
     part = "instructions a sample (valgrind)"
     mean = {room: float(count) for room, count in
             re.findall(r"^(\w+): ([\d.]+) instructions per sample,", text, re.M)}
     held = dict(re.findall(r"^(\w+): [\d.]+ instructions per sample, ([-+][\d.]+ %)", text, re.M))
-    dearest = {room: int(count) for room, count in
-               re.findall(r"^(\w+): \d+ instructions per sample in the mean, (\d+) for", text, re.M)}
+    most = {room: int(count) for room, count in
+               re.findall(r"^(\w+): \d+ instructions per sample in the mean, (\d+) in the worst", text, re.M)}
     for room, count in mean.items():
-        worst = f"; dearest sample {dearest[room]:,}" if room in dearest else ""
+        worst = f"; worst case {most[room]:,}" if room in most else ""
         table.add(part, room, f"{count:,.0f}", f"{held[room]} of what is committed{worst}")
     if not mean:
         table.add(part, "", "not counted here", "needs valgrind and g++ 12")
-    return mean, dearest
+    return mean, most
 
 
 def least_squares(table, results):
@@ -211,7 +211,7 @@ def other_processors(table, text):
                   if re.match(r"\| (double|single) precision", line)):
         unit, level, flash, ram, stack, mean, most, same = cells
         table.add("Cortex-M7 in an emulator", f"{unit} unit, {level}",
-                  f"{mean} instructions a sample, dearest {most}",
+                  f"{mean} instructions a sample, worst case {most}",
                   f"flash {flash}, RAM {ram}, stack {stack}; {same}")
     for figure in re.findall(r"^x86-64 without AVX2: (.*)$", text, re.M):
         table.add("x86-64 without AVX2, in an emulator", "beside the host", figure)
@@ -250,7 +250,7 @@ def main():
     distribution(table, "recvmmsg to result: the same, ns",
                  results.json("socket").get("socket_ns", []))
     figures["replay"] = replay(table, results.json("replay").get("replay", []))
-    figures["mean"], figures["dearest"] = instructions(table, results.log("instructions"))
+    figures["mean"], figures["worst"] = instructions(table, results.log("instructions"))
     figures["rls"], figures["apart"] = least_squares(table, results)
     figures["streaming"] = signals(table, results)
     robustness(table, results.json("robustness").get("robustness", []))

@@ -118,16 +118,6 @@ constexpr std::array<Fault, 5> kFaults{{
      }},
 }};
 
-template <class Items>
-std::string names_of(const Items& items) {
-  std::string text;
-  for (const auto& item : items) {
-    if (!text.empty()) text += ", ";
-    text += item.name;
-  }
-  return text;
-}
-
 std::optional<std::string> fill(const Fault& fault, const EffectValues& given,
                                 std::span<double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = fault.parameters[i].fallback;

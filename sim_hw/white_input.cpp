@@ -7,7 +7,7 @@
 namespace dampline::sim {
 namespace {
 
-constexpr double kStepS = 1.0 / WhiteInput::kStepRateHz;
+constexpr double kNoiseStepS = 1.0 / WhiteInput::kStepRateHz;
 constexpr int kStepsPerSample = WhiteInput::kStepRateHz / 300;
 constexpr double kAntiAliasHz = 100.0;
 
@@ -18,7 +18,7 @@ WhiteInput::WhiteInput(const WhiteInputConfig& config)
       alpha_positive_mps2_{2.0 * config.friction_positive_n / config.moving_mass_kg},
       alpha_negative_mps2_{2.0 * config.friction_negative_n / config.moving_mass_kg},
       viscous_ps_{2.0 * config.viscous_nspm / config.moving_mass_kg},
-      noise_mps2_{std::sqrt(config.input_level / kStepS)},
+      noise_mps2_{std::sqrt(config.input_level / kNoiseStepS)},
       random_{config.seed, Stream::kTrack},
       anti_alias_{kAntiAliasHz, WhiteInput::kStepRateHz} {
   const auto settle = static_cast<std::int64_t>(config.settle_s * kStepRateHz);
@@ -26,22 +26,22 @@ WhiteInput::WhiteInput(const WhiteInputConfig& config)
 }
 
 double WhiteInput::rubbed(double velocity_mps) const noexcept {
-  const double up = 0.5 * kStepS * alpha_positive_mps2_;
-  const double down = 0.5 * kStepS * alpha_negative_mps2_;
+  const double up = 0.5 * kNoiseStepS * alpha_positive_mps2_;
+  const double down = 0.5 * kNoiseStepS * alpha_negative_mps2_;
   if (velocity_mps > up) return velocity_mps - up;
   return velocity_mps < -down ? velocity_mps + down : 0.0;
 }
 
 void WhiteInput::step() {
-  deflection_m_ += 0.5 * kStepS * velocity_mps_;
+  deflection_m_ += 0.5 * kNoiseStepS * velocity_mps_;
   const double input_mps2 = noise_mps2_ * random_.normal();
   const double before_mps = rubbed(velocity_mps_);
   const double after_mps =
-      before_mps + kStepS * (input_mps2 - beta_ * deflection_m_ - viscous_ps_ * before_mps);
+      before_mps + kNoiseStepS * (input_mps2 - beta_ * deflection_m_ - viscous_ps_ * before_mps);
   const double end_mps = rubbed(after_mps);
-  alpha_mps2_ = 2.0 * (after_mps - end_mps) / kStepS + viscous_ps_ * end_mps;
+  alpha_mps2_ = 2.0 * (after_mps - end_mps) / kNoiseStepS + viscous_ps_ * end_mps;
   velocity_mps_ = end_mps;
-  deflection_m_ += 0.5 * kStepS * velocity_mps_;
+  deflection_m_ += 0.5 * kNoiseStepS * velocity_mps_;
   input_mps2_ = anti_alias_.update({input_mps2})[0];
 }
 

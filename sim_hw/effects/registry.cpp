@@ -11,16 +11,6 @@
 namespace dampline::sim {
 namespace {
 
-template <class Range>
-std::string names_of(const Range& range) {
-  std::string text;
-  for (const auto& item : range) {
-    if (!text.empty()) text += ", ";
-    text += item.name;
-  }
-  return text;
-}
-
 double scaled(double nominal, Strength how, double strength) {
   switch (how) {
     case Strength::kTimes:

@@ -52,4 +52,15 @@ using EffectValues = std::vector<std::pair<std::string, double>>;
 [[nodiscard]] std::optional<std::string> add_effect_text(SimulationConfig& config,
                                                          std::string_view text);
 
+/// "a, b, c" of what has names.
+template <class Items>
+[[nodiscard]] std::string names_of(const Items& items) {
+  std::string text;
+  for (const auto& item : items) {
+    if (!text.empty()) text += ", ";
+    text += item.name;
+  }
+  return text;
+}
+
 }  // namespace dampline::sim

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The contract of hal::FrameSource, over every implementation.
+// The contract of hal::FrameSource, over every implementation that has an end. SocketCanSource has
+// none: tests/fault/socketcan_contract_test.cpp.
+#include "tests/contract/frame_source_contract.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "drivers/candump/source.hpp"
 #include "hal/frame_source.hpp"
@@ -22,7 +23,7 @@
 namespace dampline {
 namespace {
 
-constexpr std::size_t kFrames = 300;
+constexpr std::size_t kFrames = kContractFrames;
 
 std::string candump_text() {
   std::string text;
@@ -57,7 +58,6 @@ class FakeSource final : public hal::FrameSource {
   std::size_t next_{0};
 };
 
-/// How each implementation is brought to deliver kFrames frames and then end.
 class Fake {
  public:
   hal::FrameSource& source() { return source_; }
@@ -185,68 +185,9 @@ class DamagedBlackbox {
   std::unique_ptr<drivers::BlackboxSource> source_;
 };
 
-template <class Implementation>
-class FrameSourceContract : public ::testing::Test {
- protected:
-  hal::FrameSource& source() { return implementation_.source(); }
-  /// Everything up to the end, `some` frames at a time.
-  std::vector<CanFrame> read_all(std::size_t some) {
-    std::vector<CanFrame> frames;
-    std::vector<CanFrame> part(some);
-    for (;;) {
-      const auto count = source().read(part);
-      if (!count.ok()) break;
-      EXPECT_LE(count.value(), some);
-      frames.insert(frames.end(), part.begin(),
-                    part.begin() + static_cast<std::ptrdiff_t>(count.value()));
-      if (frames.size() > kFrames) break;
-    }
-    return frames;
-  }
-
- private:
-  Implementation implementation_;
-};
-
 using Implementations = ::testing::Types<Fake, CandumpFile, CandumpPipe, Simulated,
                                          SimulatedSwapping, BlackboxFolder, DamagedBlackbox>;
-TYPED_TEST_SUITE(FrameSourceContract, Implementations);
-
-TYPED_TEST(FrameSourceContract, DeliversFramesInNonDecreasingTime) {
-  const auto frames = this->read_all(7);
-  ASSERT_EQ(frames.size(), kFrames);
-  EXPECT_TRUE(
-      std::is_sorted(frames.begin(), frames.end(),
-                     [](const CanFrame& a, const CanFrame& b) { return a.time_ns < b.time_ns; }));
-}
-
-TYPED_TEST(FrameSourceContract, StaysAtItsEnd) {
-  static_cast<void>(this->read_all(1000));
-  std::array<CanFrame, 4> frames;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(this->source().read(frames).error(), Errc::kEndOfStream);
-}
-
-TYPED_TEST(FrameSourceContract, ReadsNothingIntoNoSpaceAndLosesNothingByIt) {
-  const auto count = this->source().read({});
-  ASSERT_TRUE(count.ok());
-  EXPECT_EQ(count.value(), 0U);
-  EXPECT_EQ(this->read_all(1).size(), kFrames);
-}
-
-TYPED_TEST(FrameSourceContract, CountsWhatItDelivered) {
-  static_cast<void>(this->read_all(11));
-  EXPECT_EQ(this->source().health().frames, kFrames);
-  EXPECT_FALSE(this->source().health().truncated);
-}
-
-TYPED_TEST(FrameSourceContract, SaysThatThereIsSomethingToRead) {
-  const auto something = this->source().wait(std::chrono::milliseconds{1});
-  ASSERT_TRUE(something.ok());
-  EXPECT_TRUE(something.value());
-  static_cast<void>(this->read_all(100));
-  EXPECT_TRUE(
-      this->source().wait(std::chrono::milliseconds{1}).value());  // the end is to be reported
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(Record, FrameSourceContract, Implementations);
 
 TEST(CandumpPipeSource, DoesNotBlockOnAPipeThatHasNothingYet) {
   Pipe pipe;

@@ -16,6 +16,9 @@ using Profile = std::map<std::string, std::uint64_t>;
 [[nodiscard]] Profile profile_inside(const std::string& command, const std::string& function,
                                      const std::string& path);
 
+/// The same of the whole of `command`, all its threads together.
+[[nodiscard]] Profile profile_of(const std::string& command, const std::string& path);
+
 /// Reads callgrind's file format, written with --dump-line=no. A name that appears in it for
 /// several files is one function.
 [[nodiscard]] Profile parse_callgrind(const std::string& text);

@@ -32,7 +32,7 @@ struct SourceHealth {
 };
 
 /// Where CAN frames come from: a bus, a log file, the simulated sensors.
-/// Contract, run by tests/contract over every implementation:
+/// Contract, run over every implementation (tests/contract/frame_source_contract.hpp):
 ///  - read() never blocks; 0 frames is success, not an error
 ///  - frames arrive in non-decreasing time_ns
 ///  - after kEndOfStream every later read() is kEndOfStream

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "tests/proof/profile.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "tests/proof/command.hpp"
-#include "tests/proof/profile.hpp"
 
 namespace dampline::proof {
 namespace {
@@ -27,6 +28,16 @@ class Names {
  private:
   std::map<std::string, std::string> names_;
 };
+
+Profile profile_with(const std::string& option, const std::string& command,
+                     const std::string& path) {
+  const CommandResult run =
+      run_command("valgrind --quiet --tool=callgrind --dump-line=no " + option +
+                  " --callgrind-out-file='" + path + "' " + command + " 2>&1");
+  if (run.status != 0) throw std::runtime_error{"valgrind: " + run.output};
+  std::ifstream file{path};
+  return parse_callgrind({std::istreambuf_iterator<char>{file}, {}});
+}
 
 }  // namespace
 
@@ -63,12 +74,11 @@ Profile parse_callgrind(const std::string& text) {
 
 Profile profile_inside(const std::string& command, const std::string& function,
                        const std::string& path) {
-  const CommandResult run =
-      run_command("valgrind --quiet --tool=callgrind --dump-line=no --toggle-collect='" + function +
-                  "' --callgrind-out-file='" + path + "' " + command + " 2>&1");
-  if (run.status != 0) throw std::runtime_error{"valgrind: " + run.output};
-  std::ifstream file{path};
-  return parse_callgrind({std::istreambuf_iterator<char>{file}, {}});
+  return profile_with("--toggle-collect='" + function + "'", command, path);
+}
+
+Profile profile_of(const std::string& command, const std::string& path) {
+  return profile_with("", command, path);
 }
 
 std::string describe_growth(const Profile& before, const Profile& now, std::size_t lines) {
