@@ -48,5 +48,19 @@ TEST(Arrows, AreReportedWhereTheyPointTheWrongWay) {
           "app/main.cpp includes tests/x.hpp"));
 }
 
+TEST(Arrows, BetweenRoomsOfTheCoreFormNoCircle) {
+  const std::vector<SourceFile> files{
+      {"firmware_core/dampline/basis/a.hpp",
+       "#include \"dampline/numeric/b.hpp\"\n#include \"dampline/snapshot.hpp\"\n"},
+      {"firmware_core/dampline/numeric/b.hpp", "#include \"dampline/basis/a.hpp\"\n"},
+      {"firmware_core/dampline/estimate/c.cpp", "#include \"dampline/estimate/c.hpp\"\n"},
+      {"firmware_core/dampline/identifier.hpp", "#include \"dampline/guard/guard.hpp\"\n"},
+      {"firmware_core/dampline/attic/d.hpp", "#include \"dampline/attic/e.hpp\"\n"},
+      {"app/main.cpp", "#include \"dampline/effect/f.hpp\"\n"}};
+  EXPECT_THAT(wrong_arrows(files),
+              ElementsAre("firmware_core/dampline/numeric/b.hpp includes dampline/basis/a.hpp",
+                          "firmware_core/dampline/attic/d.hpp includes dampline/attic/e.hpp"));
+}
+
 }  // namespace
 }  // namespace dampline::proof
