@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/density/input_spectrum.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "dampline/density/input_statistics.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline {

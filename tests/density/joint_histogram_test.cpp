@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dampline/density/dependence.hpp"
+#include "dampline/density/joint_histogram.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline {

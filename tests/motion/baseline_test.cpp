@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/baseline.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "dampline/motion/drift_free_integral.hpp"
 
 namespace dampline {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/fir.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <vector>
+
+#include "dampline/motion/anti_alias.hpp"
 
 namespace dampline {
 namespace {

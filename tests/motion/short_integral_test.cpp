@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/short_integral.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "dampline/motion/drift_free_integral.hpp"
 #include "tests/steps.hpp"
 
 namespace dampline {

@@ -10,7 +10,6 @@
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/motion/anti_alias.hpp"
 #include "dampline/motion/drift_free_integral.hpp"
-#include "dampline/motion/fir.hpp"
 #include "dampline/motion/noise_meter.hpp"
 #include "dampline/result.hpp"
 #include "dampline/sample.hpp"

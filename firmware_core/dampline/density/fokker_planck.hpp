@@ -5,14 +5,10 @@
 #include <cstdint>
 
 #include "dampline/basis/columns.hpp"
-#include "dampline/density/block_powers.hpp"
 #include "dampline/density/drift_fit.hpp"
-#include "dampline/density/drift_sums.hpp"
-#include "dampline/density/growing_weight.hpp"
 #include "dampline/density/histogram.hpp"
-#include "dampline/density/input_spectrum.hpp"
+#include "dampline/density/input_statistics.hpp"
 #include "dampline/density/joint_histogram.hpp"
-#include "dampline/density/modulation.hpp"
 #include "dampline/density/paper_form.hpp"
 #include "dampline/density/trust.hpp"
 #include "dampline/motion/motion.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "dampline/density/histogram.hpp"
-#include "dampline/density/modulation.hpp"
+#include "dampline/density/input_statistics.hpp"
 
 namespace dampline {
 

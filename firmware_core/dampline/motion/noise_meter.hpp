@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/motion/sliding_window.hpp"
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/motion/baseline.hpp"
+#include "dampline/motion/drift_free_integral.hpp"
 
 #include <algorithm>
 
