@@ -9,7 +9,7 @@
 #include "dampline/effect/diagnosis.hpp"
 #include "dampline/guard/guard.hpp"
 #include "dampline/methods.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 #include "dampline/sample/assembler.hpp"
 
 namespace dampline::bench {

@@ -10,7 +10,7 @@
 
 #include "app/verify/phase/rows.hpp"
 #include "app/verify/phase/studies.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include "app/identify/truck_result.hpp"
 #include "dampline/methods.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 
 namespace dampline::app {
 

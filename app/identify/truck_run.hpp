@@ -18,7 +18,7 @@
 #include "app/run/result.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/methods.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 
 namespace dampline::app {
 

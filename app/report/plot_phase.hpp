@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 
 namespace dampline::app {
 

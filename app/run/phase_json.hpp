@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 
 namespace dampline::app {
 

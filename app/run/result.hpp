@@ -10,7 +10,7 @@
 #include "app/run/evidence.hpp"
 #include "app/run/faults.hpp"
 #include "app/run/methods.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "dampline/phase/period.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "dampline/phase/period_meter.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline {

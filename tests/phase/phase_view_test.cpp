@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/phase/phase_view.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "dampline/phase/view.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline {

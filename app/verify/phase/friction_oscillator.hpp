@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "dampline/phase/phase_point.hpp"
+#include "dampline/phase/stroboscope.hpp"
 
 namespace dampline::sim {
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+
+#include "dampline/result.hpp"
 
 namespace dampline {
 
@@ -35,5 +40,107 @@ struct Period {
 /// it, kNone if it has not, kNotEnough if fewer than four of it fit into the lags.
 [[nodiscard]] Period confirm_period(const double* correlation, int lags, std::uint64_t pairs,
                                     double lag_s, double period_s) noexcept;
+
+/// Autocovariance of a signal up to Lags - 1 steps of `decimation` samples, and from it the
+/// signal's period. Every decimation-th sample costs Lags multiplications; nothing grows.
+template <int Lags>
+class PeriodMeter {
+  static_assert(Lags >= 64);
+
+ public:
+  /// `step_s`: time between samples. kInvalidConfig unless it is above 0 and decimation at least 1.
+  [[nodiscard]] static Result<PeriodMeter> make(double step_s, int decimation) noexcept {
+    if (!(step_s > 0.0) || !std::isfinite(step_s) || decimation < 1) return Errc::kInvalidConfig;
+    PeriodMeter meter;
+    meter.lag_s_ = step_s * decimation;
+    meter.decimation_ = decimation;
+    return meter;
+  }
+
+  /// Samples are equally spaced; a sample that is no number counts as a gap.
+  void update(double x) noexcept {
+    if (!std::isfinite(x)) return restart();
+    sum_ += x;
+    if (++summed_ < decimation_) return;
+    push(sum_ / decimation_);
+    sum_ = 0.0;
+    summed_ = 0;
+  }
+
+  /// After a gap: what follows is no neighbour of what was. The statistics stay.
+  void restart() noexcept {
+    sum_ = 0.0;
+    summed_ = 0;
+    filled_ = 0;
+  }
+
+  /// Not for the sample path of a small controller: some 10 Lags operations.
+  [[nodiscard]] Period period() const noexcept {
+    Correlations r;
+    const Period refused = correlate(r);
+    if (refused.state != PeriodState::kFound) return refused;
+    return find_period(r.data(), Lags, pairs_, lag_s_);
+  }
+
+  /// Whether the signal has the period that it is said to have.
+  [[nodiscard]] Period confirm(double period_s) const noexcept {
+    Correlations r;
+    const Period refused = correlate(r);
+    if (refused.state != PeriodState::kFound) return refused;
+    return confirm_period(r.data(), Lags, pairs_, lag_s_, period_s);
+  }
+
+ private:
+  static constexpr std::size_t kLags = static_cast<std::size_t>(Lags);
+  using Correlations = std::array<double, kLags>;
+
+  /// kFound: the autocorrelation is there; otherwise why not.
+  [[nodiscard]] Period correlate(Correlations& r) const noexcept {
+    if (pairs_ < 3 * static_cast<std::uint64_t>(Lags)) return {};
+    const auto pairs = static_cast<double>(pairs_);
+    const double mean = total_ / pairs;
+    const double variance = products_[0] / pairs - mean * mean;
+    if (!(variance > kRounding * (offset_ * offset_ + mean * mean)))
+      return {.state = PeriodState::kNoMotion};
+    for (std::size_t l = 0; l < kLags; ++l)
+      r[l] = (products_[l] / pairs - mean * (lagged_[l] / pairs)) / variance;
+    return {.state = PeriodState::kFound};
+  }
+
+  void push(double x) noexcept {
+    if (!has_offset_) {  // keeps a large mean out of the sums
+      offset_ = x;
+      has_offset_ = true;
+    }
+    newest_ = newest_ == 0 ? kLags - 1 : newest_ - 1;
+    ring_[newest_] = x - offset_;
+    ring_[newest_ + kLags] = x - offset_;  // twice, so that the lags lie in one row
+    if (filled_ < kLags && ++filled_ < kLags) return;
+    const double* past = ring_.data() + newest_;
+    const double now = past[0];
+    for (std::size_t l = 0; l < kLags; ++l) {
+      products_[l] += now * past[l];
+      lagged_[l] += past[l];
+    }
+    total_ += now;
+    ++pairs_;
+  }
+
+  static constexpr double kRounding = 1e-24;  // of the squares of a constant
+
+  double lag_s_{0.0};
+  int decimation_{1};
+  int summed_{0};
+  double sum_{0.0};
+  bool has_offset_{false};
+  double offset_{0.0};
+  std::size_t newest_{0};
+  std::size_t filled_{0};
+  std::array<double, 2 * kLags> ring_{};
+  std::array<double, kLags> products_{};
+  std::array<double, kLags> lagged_{};
+  double total_{0.0};
+  std::uint64_t pairs_{0};
+};
 
 }  // namespace dampline

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "dampline/numeric/information.hpp"
-#include "dampline/phase/phase_point.hpp"
+#include "dampline/phase/stroboscope.hpp"
 #include "dampline/result.hpp"
 #include "dampline/snapshot.hpp"
 

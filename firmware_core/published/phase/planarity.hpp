@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "dampline/numeric/information.hpp"
-#include "dampline/phase/phase_point.hpp"
+#include "dampline/phase/stroboscope.hpp"
 #include "published/phase/planarity_verdict.hpp"
 
 namespace dampline {

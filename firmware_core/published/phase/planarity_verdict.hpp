@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "dampline/numeric/information.hpp"
-#include "dampline/phase/phase_point.hpp"
+#include "dampline/phase/stroboscope.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {

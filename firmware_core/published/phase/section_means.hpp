@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/phase/phase_point.hpp"
+#include "dampline/phase/stroboscope.hpp"
 
 namespace dampline {
 

@@ -11,7 +11,7 @@
 #include "dampline/effect/diagnosis.hpp"
 #include "dampline/guard/guard.hpp"
 #include "dampline/methods.hpp"
-#include "dampline/phase/phase_view.hpp"
+#include "dampline/phase/view.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "tests/proof/probe/rooms.hpp"
 
