@@ -16,8 +16,7 @@
 
 #include "bench/guard_cases.hpp"
 #include "dampline/damping/estimator.hpp"
-#include "dampline/guard/change_alarm.hpp"
-#include "dampline/guard/group_meter.hpp"
+#include "dampline/guard/parameter_drift.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "app/identify/sample_feed.hpp"
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
-#include "dampline/effect/explanation.hpp"
+#include "dampline/effect/conclusion.hpp"
 
 namespace dampline::app {
 

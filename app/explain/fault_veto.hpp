@@ -3,8 +3,8 @@
 #include <span>
 
 #include "app/run/faults.hpp"
+#include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/explainer.hpp"
-#include "dampline/effect/explanation.hpp"
 #include "dampline/faults.hpp"
 
 namespace dampline::app {

@@ -8,8 +8,8 @@
 
 #include "app/explain/evidence_point.hpp"
 #include "app/run/evidence.hpp"
+#include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/diagnosis.hpp"
-#include "dampline/effect/explanation.hpp"
 
 namespace dampline::app {
 

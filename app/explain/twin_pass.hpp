@@ -6,7 +6,7 @@
 #include "app/explain/frame_noise.hpp"
 #include "app/explain/truck_pass.hpp"
 #include "app/explain/twin.hpp"
-#include "dampline/effect/explanation.hpp"
+#include "dampline/effect/conclusion.hpp"
 
 namespace dampline::app {
 

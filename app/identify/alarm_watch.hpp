@@ -6,8 +6,7 @@
 
 #include "app/identify/truck_result.hpp"
 #include "dampline/damping/estimator.hpp"
-#include "dampline/guard/change_alarm.hpp"
-#include "dampline/guard/group_meter.hpp"
+#include "dampline/guard/parameter_drift.hpp"
 
 namespace dampline::app {
 

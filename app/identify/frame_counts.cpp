@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "dampline/sample/ledger.hpp"
+#include "dampline/sample/assembler.hpp"
 
 namespace dampline::app {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dampline/sample/rate_meter.hpp"
+#include "dampline/sample/ticks.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {

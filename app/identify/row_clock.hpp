@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "dampline/sample/rate_meter.hpp"
-#include "dampline/sample/tick_line.hpp"
+#include "dampline/sample/ticks.hpp"
 
 namespace dampline::app {
 

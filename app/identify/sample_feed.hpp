@@ -10,8 +10,8 @@
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
 #include "dampline/sample.hpp"
-#include "dampline/sample/rate_meter.hpp"
 #include "dampline/sample/screen.hpp"
+#include "dampline/sample/ticks.hpp"
 
 namespace dampline::app {
 

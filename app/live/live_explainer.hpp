@@ -11,7 +11,7 @@
 #include "app/identify/truck_run.hpp"
 #include "dampline/effect/diagnosis.hpp"
 #include "dampline/effect/explainer.hpp"
-#include "dampline/effect/store_copy.hpp"
+#include "dampline/effect/gram_store.hpp"
 
 namespace dampline::app {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "dampline/sample/ledger.hpp"
+#include "dampline/sample/assembler.hpp"
 #include "hal/frame_source.hpp"
 
 namespace dampline::bus {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "dampline/effect/explanation.hpp"
+#include "dampline/effect/conclusion.hpp"
 
 namespace dampline::effect {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/pitch_bank.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "dampline/effect/modes.hpp"
 
 namespace dampline::effect {
 namespace {

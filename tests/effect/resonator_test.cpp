@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/resonator.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "dampline/effect/modes.hpp"
 
 namespace dampline::effect {
 namespace {

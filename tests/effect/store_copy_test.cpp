@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/store_copy.hpp"
-
 #include <gtest/gtest.h>
 
 #include <memory>
+
+#include "dampline/effect/gram_store.hpp"
 
 namespace dampline::effect {
 namespace {

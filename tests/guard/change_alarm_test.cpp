@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/change_alarm.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
 #include "dampline/damping/estimator.hpp"
-#include "dampline/guard/group_meter.hpp"
+#include "dampline/guard/parameter_drift.hpp"
 #include "sim_hw/noise.hpp"
 #include "sim_hw/simulation.hpp"
 

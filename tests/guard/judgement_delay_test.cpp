@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dampline/damping/estimator.hpp"
-#include "dampline/guard/impulse_power.hpp"
+#include "dampline/guard/spike_watch.hpp"
 #include "sim_hw/faults.hpp"
 #include "sim_hw/noise.hpp"
 #include "sim_hw/simulation.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dampline/guard/block_series.hpp"
-#include "dampline/guard/code_watch.hpp"
+#include "dampline/guard/channel_watch.hpp"
 #include "dampline/guard/spike_watch.hpp"
 #include "dampline/numeric/fourier.hpp"
 #include "dampline/numeric/log_histogram.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/ledger.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <random>
 #include <set>
 
+#include "dampline/sample/assembler.hpp"
 #include "frame_maker.hpp"
 
 namespace dampline {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/rate_meter.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "dampline/sample/ticks.hpp"
 
 namespace dampline {
 namespace {

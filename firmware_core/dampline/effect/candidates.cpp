@@ -4,8 +4,8 @@
 namespace dampline::effect {
 namespace {
 
-void add(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t form,
-         std::int8_t sign, const Regressor& regressor) noexcept {
+void add_candidate(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t form,
+                   std::int8_t sign, const Regressor& regressor) noexcept {
   Candidate& c = out.item[out.count++];
   c = {.effect = effect,
        .variant = static_cast<std::uint8_t>(variant),
@@ -18,34 +18,36 @@ void add(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t fo
 /// Two neighbours of a grid side by side: what lies between them.
 void add_pair(CandidateList& out, Effect effect, std::size_t variant, std::uint8_t form,
               std::int8_t sign, int column) noexcept {
-  add(out, effect, variant, form, sign, Regressor::of(column));
+  add_candidate(out, effect, variant, form, sign, Regressor::of(column));
   Candidate& c = out.item[out.count - 1];
   c.regressor[c.count++] = Regressor::of(column + 1);
 }
 
 void add_damping(CandidateList& out) noexcept {
-  add(out, Effect::kViscous, 0, kPlainForm, 1, viscous_regressor());
-  add(out, Effect::kQuadraticDamping, 0, kPlainForm, 1, Regressor::of(kSpeedSquared));
-  add(out, Effect::kAsymmetricViscous, 0, kPlainForm, 0, Regressor::of(kSpeed));
+  add_candidate(out, Effect::kViscous, 0, kPlainForm, 1, viscous_regressor());
+  add_candidate(out, Effect::kQuadraticDamping, 0, kPlainForm, 1, Regressor::of(kSpeedSquared));
+  add_candidate(out, Effect::kAsymmetricViscous, 0, kPlainForm, 0, Regressor::of(kSpeed));
   Candidate& both = out.item[out.count - 1];
   both.regressor[both.count++] = viscous_regressor();
 }
 
 void add_friction(const Grids& grids, CandidateList& out) noexcept {
-  add(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
-  add(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0, Regressor::of(kProgressiveAbsolute));
+  add_candidate(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
+  add_candidate(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0,
+                Regressor::of(kProgressiveAbsolute));
   for (std::size_t i = 0; i < kStribeckSpeeds; ++i) {
     if (grids.is_fine(Effect::kStribeck) && i != kFineStribeck) continue;
-    add(out, Effect::kStribeck, i, kPlainForm, 1, Regressor::of(kStribeck + at(i)));
+    add_candidate(out, Effect::kStribeck, i, kPlainForm, 1, Regressor::of(kStribeck + at(i)));
   }
   for (std::size_t i = 0; i < kDahlDistances; ++i) {
-    add(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, Regressor::of(kDahl + at(i)));
+    add_candidate(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1,
+                  Regressor::of(kDahl + at(i)));
     if (i + 1 < kDahlDistances && !grids.is_fine(Effect::kPreslidingHysteresis)) {
       add_pair(out, Effect::kPreslidingHysteresis, i, kPlainForm, 1, kDahl + at(i));
     }
   }
   for (std::size_t i = 0; i < kBacklashGaps; ++i) {
-    add(out, Effect::kBacklash, i, kPlainForm, 1, Regressor::of(kBacklash + at(i)));
+    add_candidate(out, Effect::kBacklash, i, kPlainForm, 1, Regressor::of(kBacklash + at(i)));
     if (i + 1 < kBacklashGaps && !grids.is_fine(Effect::kBacklash)) {
       add_pair(out, Effect::kBacklash, i, kPlainForm, 1, kBacklash + at(i));
     }
@@ -53,23 +55,26 @@ void add_friction(const Grids& grids, CandidateList& out) noexcept {
 }
 
 void add_stiffness(CandidateList& out) noexcept {
-  add(out, Effect::kCubicStiffness, 0, kPlainForm, 0, Regressor::of(kCube));
-  add(out, Effect::kQuadraticStiffness, 0, kPlainForm, 0, Regressor::of(kSquare));
-  add(out, Effect::kAsymmetricStiffness, 0, kPlainForm, 0, Regressor::of(kMagnitude));
+  add_candidate(out, Effect::kCubicStiffness, 0, kPlainForm, 0, Regressor::of(kCube));
+  add_candidate(out, Effect::kQuadraticStiffness, 0, kPlainForm, 0, Regressor::of(kSquare));
+  add_candidate(out, Effect::kAsymmetricStiffness, 0, kPlainForm, 0, Regressor::of(kMagnitude));
   for (std::size_t i = 0; i < kBumpGaps; ++i) {
     const Regressor up = Regressor::of(kBumpUp + at(i));
-    add(out, Effect::kBumpStop, i, kPlainForm, 1, up.plus(kBumpDown + at(i), -1.0));
-    add(out, Effect::kBumpStop, i, kOneSidedUp, 1, up);
-    add(out, Effect::kBumpStop, i, kOneSidedDown, 1, Regressor::of(kBumpDown + at(i), -1.0));
+    add_candidate(out, Effect::kBumpStop, i, kPlainForm, 1, up.plus(kBumpDown + at(i), -1.0));
+    add_candidate(out, Effect::kBumpStop, i, kOneSidedUp, 1, up);
+    add_candidate(out, Effect::kBumpStop, i, kOneSidedDown, 1,
+                  Regressor::of(kBumpDown + at(i), -1.0));
   }
 }
 
 void add_modes(const Grids& grids, CandidateList& out) noexcept {
   for (std::size_t i = 0; i < kPitchModes; ++i) {
-    add(out, Effect::kUnmodelledMode, i, kPitchForm, 1, Regressor::of(kPitchSign + at(i)));
+    add_candidate(out, Effect::kUnmodelledMode, i, kPitchForm, 1,
+                  Regressor::of(kPitchSign + at(i)));
   }
   for (std::size_t i = 0; i < kFlexibleModes; ++i) {
-    add(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, Regressor::of(kModeBend + at(i)));
+    add_candidate(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1,
+                  Regressor::of(kModeBend + at(i)));
     if (i + 1 < kFlexibleModes && !grids.is_fine(Effect::kUnmodelledMode)) {
       add_pair(out, Effect::kUnmodelledMode, i, kFlexibleForm, -1, kModeBend + at(i));
     }
@@ -100,8 +105,8 @@ Regressor gain_regressor(const BaseForce& base, std::uint8_t form) noexcept {
 }
 void add_sensors(const BaseForce& base, CandidateList& out) noexcept {
   for (const std::uint8_t form : {kFrameForm, kWheelset1Form, kWheelset2Form}) {
-    add(out, Effect::kTimeSkew, 0, form, 0, skew_regressor(base, form));
-    add(out, Effect::kGainError, 0, form, 0, gain_regressor(base, form));
+    add_candidate(out, Effect::kTimeSkew, 0, form, 0, skew_regressor(base, form));
+    add_candidate(out, Effect::kGainError, 0, form, 0, gain_regressor(base, form));
   }
 }
 

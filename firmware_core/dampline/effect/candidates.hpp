@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "dampline/effect/columns.hpp"
-#include "dampline/effect/effect.hpp"
 #include "dampline/effect/grids.hpp"
+#include "dampline/explanation.hpp"
 
 namespace dampline::effect {
 

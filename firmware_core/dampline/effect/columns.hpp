@@ -100,6 +100,6 @@ inline constexpr int kColumns = kTarget + 1;
 /// accelerations and projected by its integrals and derivative.
 inline constexpr int kSampledColumns = kFrameRate;
 /// Of these, functions of the motion; the others are filtered accelerations.
-inline constexpr int kLawColumnsOfEffects = kModeBend;
+inline constexpr int kLawColumns = kModeBend;
 
 }  // namespace dampline::effect

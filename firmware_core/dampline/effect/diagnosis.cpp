@@ -103,11 +103,11 @@ void Diagnosis::take(const Motion& motion) noexcept {
     velocity_squares_ += motion.velocity_mps * motion.velocity_mps;
     deflection_squares_ += motion.deflection_m * motion.deflection_m;
   }
-  const EffectRows::Sampled left = before_last_;
-  const EffectRows::Sampled centre = last_bend_;
+  const Rows::Sampled left = before_last_;
+  const Rows::Sampled centre = last_bend_;
   const LawValues laws = mean_.update(instant_of(motion));
-  EffectRows::Sampled values = (left + 10.0F * centre + last_bend_) / 12.0F;
-  values.head<kLawColumnsOfEffects>() = laws;
+  Rows::Sampled values = (left + 10.0F * centre + last_bend_) / 12.0F;
+  values.head<kLawColumns>() = laws;
   if (mean_.complete()) {
     if (first_row_tick_ < 0) first_row_tick_ = motion.tick - 1;
     rows_.set(motion.tick - 1, values, still_);

@@ -4,12 +4,10 @@
 #include <cstdint>
 
 #include "dampline/damping/estimator.hpp"
-#include "dampline/effect/effect_rows.hpp"
 #include "dampline/effect/gram_store.hpp"
-#include "dampline/effect/impulse_meter.hpp"
-#include "dampline/effect/law_mean.hpp"
-#include "dampline/effect/raw_ring.hpp"
-#include "dampline/effect/resonator.hpp"
+#include "dampline/effect/laws.hpp"
+#include "dampline/effect/modes.hpp"
+#include "dampline/effect/rows.hpp"
 
 namespace dampline::effect {
 
@@ -35,9 +33,7 @@ class Diagnosis {
   /// The tick whose sampled columns the newest update() made; negative: it made none.
   [[nodiscard]] std::int64_t column_tick() const noexcept { return column_tick_; }
   /// The sampled columns of a row at column_tick().
-  [[nodiscard]] const EffectRows::Sampled& columns() const noexcept {
-    return rows_.values(column_tick_);
-  }
+  [[nodiscard]] const Rows::Sampled& columns() const noexcept { return rows_.values(column_tick_); }
   [[nodiscard]] const RawRing& raw() const noexcept { return raw_; }
   /// The deflection's size: its rms over the learning time, rounded to a half power of two of a
   /// millimetre so that records share their grids. 0 until it is known.
@@ -61,13 +57,13 @@ class Diagnosis {
   double sample_rate_hz_;
   std::int64_t block_ticks_;
   RawRing raw_;
-  EffectRows rows_;
+  Rows rows_;
   GramStore store_;
   ImpulseMeter impulses_;
   LawMean mean_;
   std::array<Resonator, kFlexibleModes> flexible_;
-  EffectRows::Sampled last_bend_ = EffectRows::Sampled::Zero();  // of the resonators, two samples
-  EffectRows::Sampled before_last_ = EffectRows::Sampled::Zero();
+  Rows::Sampled last_bend_ = Rows::Sampled::Zero();  // of the resonators, two samples
+  Rows::Sampled before_last_ = Rows::Sampled::Zero();
 
   std::int64_t learnt_{0};
   double learnt_squares_{0.0};

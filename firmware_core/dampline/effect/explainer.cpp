@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/effect/parameters.hpp"
 #include "dampline/effect/rules.hpp"
 
 namespace dampline::effect {
@@ -62,6 +61,18 @@ double handicap(const Candidate& candidate) noexcept {
   const bool one_sided = candidate.effect == Effect::kBumpStop && candidate.form != kPlainForm;
   return 1.0 + (between ? 0.01 : 0.0) + (one_sided ? 0.015 : 0.0);
 }
+
+constexpr double kGridStd = 0.29;     // of a place known to one step: 1 / sqrt(12)
+constexpr double kRowsPerFact = 4.0;  // windows overlap
+
+/// Where the parabola through three errors is least, in steps from the middle one.
+double vertex(const std::array<double, 2>& side, double middle) noexcept {
+  const double curvature = side[0] + side[1] - 2.0 * middle;
+  if (!(side[0] > 0.0 && side[1] > 0.0 && curvature > 0.0)) return 0.0;
+  return std::clamp(0.5 * (side[0] - side[1]) / curvature, -0.5, 0.5);
+}
+
+constexpr double kTwinGains = 2.0;  // a real effect gains more than so many times the twin's
 
 }  // namespace
 
@@ -250,6 +261,160 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   describe(config.moving_mass_kg, out);
   conclude(0, out);
   return out;
+}
+
+/// Where the error is least between the grid's points: the vertex of the parabola through it and
+/// its neighbours; its deviation from the parabola's curvature.
+void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
+                       Step& step) noexcept {
+  const Candidate& chosen = step.chosen;
+  step.place = chosen.variant;
+  step.place_std = kGridStd;
+  if (is_pair(chosen)) {
+    int term = ModelFit::kFirstEffect;
+    for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
+    const double low = std::abs(final.theta[term]);
+    const double high = std::abs(final.theta[term + 1]);
+    step.place += high / (low + high);
+    return;
+  }
+  list_candidates(base_of(final), grids_, candidates_);
+  const std::size_t line = line_of(chosen.effect, chosen.form == kPitchForm, grids_);
+  const std::array<double, 2> side = beside(model, i, 1, true);
+  step.place += vertex(side, final.nmse);
+  step.line_offset = vertex(beside(model, i, static_cast<int>(line), false), final.nmse);
+  const double curvature = side[0] + side[1] - 2.0 * final.nmse;
+  if (!(side[0] > 0.0 && side[1] > 0.0 && curvature > 0.0)) return;
+  const double target = evidence_.total.at(kTarget, kTarget);
+  step.place_std = std::clamp(std::sqrt(2.0 * kRowsPerFact / (curvature * target)), 0.05, kGridStd);
+}
+
+std::array<double, 2> Explainer::beside(const Model& model, std::size_t i, int apart,
+                                        bool in_line) noexcept {
+  std::array<double, 2> out{};
+  const Candidate& chosen = model.effect[i];
+  const std::size_t line = line_of(chosen.effect, chosen.form == kPitchForm, grids_);
+  for (std::size_t c = 0; c < candidates_.count; ++c) {
+    const Candidate& other = candidates_.item[c];
+    if (!is_of_grid(other, chosen) || other.count != 1) continue;
+    const int distance = static_cast<int>(other.variant) - static_cast<int>(chosen.variant);
+    const bool one_line = other.variant / line == chosen.variant / line;
+    if ((distance != apart && distance != -apart) || one_line != in_line) continue;
+    Model neighbour = model;
+    neighbour.effect[i] = other;
+    out[distance > 0 ? 1 : 0] = fitter_.fit(neighbour).nmse;
+  }
+  return out;
+}
+
+/// What an explanation by other sums knows already: the first effect, at the point of its grid that
+/// is now the best, and a late channel, which is no column any more.
+void Explainer::keep(const GramStore& store, const Explanation& known, Explanation& out,
+                     ModelFit& now) noexcept {
+  for (std::size_t i = 0; i < known.step_count; ++i) {
+    const bool late = known.step[i].chosen.effect == Effect::kTimeSkew;
+    if (i > 0 && !late) continue;
+    Step step = known.step[i];
+    Candidate member = step.chosen;
+    if (late) {
+      member.count = 0;
+    } else {
+      BestOfEffects best;
+      try_all(out.model, now, best);
+      const Best& b = best[static_cast<std::size_t>(member.effect)];
+      if (!b.ok) continue;
+      step.chosen = member = b.candidate;
+    }
+    out.model = out.model.with(member);
+    now = settle(store, out.model);
+    if (late) {
+      step.held_out_nmse_after = now.held_out_nmse;
+      step.gain = 1.0 - step.held_out_nmse_after / step.held_out_nmse_before;
+    }
+    out.step[out.step_count++] = step;
+  }
+  out.base = known.base;
+  out.base_weight = known.base_weight;
+  out.base_target = known.base_target;
+}
+
+void Explainer::restate(Explanation& e) noexcept {
+  Model model = e.base_model;
+  double before = fitter_.fit(model).held_out_nmse;
+  e.base_restated_nmse = before;
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    Step& step = e.step[i];
+    const Candidate& added = e.model.effect[e.base_count + i];
+    step.restated_before = step.held_out_nmse_before;
+    step.restated_after = step.held_out_nmse_after;
+    if (added.count == 0) continue;  // no column, so no other error
+    model = model.with(added);
+    step.restated_before = before;
+    step.restated_after = before = fitter_.fit(model).held_out_nmse;
+  }
+}
+
+Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanation& by) noexcept {
+  if (other.store().count() == 0 || !evidence_.load(other.store())) return {};
+  evidence_.weigh(other.store(), by.weight);
+  return {fitter_.nmse_of(by.base_model, by.base), fitter_.nmse_of(by.model, by.final)};
+}
+
+double Explainer::left_of_twin(const Diagnosis& twin, const Model& model,
+                               const ScaleWeights& weights, double target) noexcept {
+  if (twin.store().count() < kFewestEntries || !evidence_.load(twin.store())) return -1.0;
+  evidence_.weigh(twin.store(), weights);
+  const ModelFit fit = fitter_.fit(model);
+  return fit.ok ? fit.held_out_nmse * evidence_.total.at(kTarget, kTarget) / target : -1.0;
+}
+
+bool Explainer::apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& e) noexcept {
+  const auto mean_of = [&](const ScaleWeights& weights, double target) {
+    const double first = left_of_twin(twins.base, e.base_model, weights, target);
+    if (twins.other_noise == nullptr || first < 0.0) return first;
+    const double second = left_of_twin(*twins.other_noise, e.base_model, weights, target);
+    return second < 0.0 ? second : 0.5 * (first + second);
+  };
+  const double base_floor = mean_of(e.base_weight, e.base_target);
+  if (base_floor < 0.0) return false;
+  e.base_floor_nmse = base_floor;
+  if (!beats_twin(twins.base, e)) drop_steps(e);
+  const Model remembering = remembering_part(e);
+  const bool remembers = twins.remembering != nullptr && remembering.count > e.base_count;
+  const double floor = remembers ? left_of_twin(*twins.remembering, remembering, e.weight, e.target)
+                                 : mean_of(e.weight, e.target);
+  if (floor < 0.0) return false;
+  e.floor_nmse = floor;
+  conclude(impacts, e);
+  return true;
+}
+
+Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
+                             const Candidate& skew) noexcept {
+  if (diagnosis.store().count() < kFewestEntries || !evidence_.load(diagnosis.store())) return {};
+  Model with;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    if (model.effect[i].count > 0) with = with.with(model.effect[i]);
+  }
+  int term = ModelFit::kFirstEffect;
+  for (std::size_t i = 0; i < with.count; ++i) term += static_cast<int>(with.effect[i].count);
+  with = with.with(skew);
+  const ModelFit fit = settle(diagnosis.store(), with);
+  if (!fit.ok) return {};
+  return {fit.theta[term], std::sqrt(std::max(fit.covariance(term, term), 0.0))};
+}
+
+/// Large residuals, too, are rare in time on a twin without impacts: those of sticking.
+bool Explainer::beats_twin(const Diagnosis& twin, const Explanation& e) noexcept {
+  if (e.step_count == 0) return true;
+  double gain = twin.impulses().share();
+  if (e.step[0].chosen.count > 0) {
+    const double without = left_of_twin(twin, e.base_model, e.base_weight, e.base_target);
+    const double with =
+        left_of_twin(twin, e.base_model.with(e.step[0].chosen), e.base_weight, e.base_target);
+    gain = with < 0.0 ? 0.0 : 1.0 - with / without;
+  }
+  return e.step[0].gain >= kTwinGains * gain;
 }
 
 }  // namespace dampline::effect

@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 
+#include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/diagnosis.hpp"
-#include "dampline/effect/explanation.hpp"
 
 namespace dampline::effect {
 

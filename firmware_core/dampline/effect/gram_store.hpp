@@ -1,12 +1,57 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/effect/gram.hpp"
+#include "dampline/basis/window_bank.hpp"
+#include "dampline/effect/columns.hpp"
 
 namespace dampline::effect {
+
+using Row = Eigen::Matrix<double, kColumns, 1>;
+
+/// Sums of products of all columns: the packed upper triangle of [A t]'[A t].
+class Gram {
+ public:
+  static constexpr std::size_t kSize = static_cast<std::size_t>(kColumns) * (kColumns + 1) / 2;
+
+  void absorb(const Row& row) noexcept {
+    double* out = sum_.data();
+    for (int i = 0; i < kColumns; ++i) {
+      const double x = row[i];
+      for (int j = i; j < kColumns; ++j) *out++ += x * row[j];
+    }
+  }
+  void add(const Gram& other, double weight = 1.0) noexcept {
+    for (std::size_t i = 0; i < kSize; ++i) sum_[i] += weight * other.sum_[i];
+  }
+  void clear() noexcept { sum_.fill(0.0); }
+  [[nodiscard]] double at(int i, int j) const noexcept {
+    return i <= j ? sum_[offset(i) + static_cast<std::size_t>(j - i)]
+                  : sum_[offset(j) + static_cast<std::size_t>(i - j)];
+  }
+
+ private:
+  static constexpr std::size_t offset(int i) noexcept {
+    return static_cast<std::size_t>(i * kColumns - i * (i - 1) / 2);
+  }
+  std::array<double, kSize> sum_{};
+};
+
+/// One Gram matrix per scale, and how many rows it holds.
+struct ScaleGrams {
+  std::array<Gram, kScales> gram{};
+  std::array<double, kScales> rows{};
+  std::uint32_t blocks{0};
+
+  void clear() noexcept {
+    for (Gram& g : gram) g.clear();
+    rows.fill(0.0);
+    blocks = 0;
+  }
+};
 
 inline constexpr std::size_t kEffectEntries = 40;
 
@@ -59,6 +104,32 @@ class GramStore {
   std::size_t cursor_{0};
   std::array<std::size_t, kSlots> pending_{};
   std::size_t pending_count_{0};
+};
+
+/// A copy of a store's entries beside its updates, one matrix a step, so that no sample pays for
+/// all of it. The copy is of one moment: when the store changes meanwhile, it begins anew.
+class StoreCopy {
+ public:
+  void start() noexcept { part_ = 0; }
+  /// The next part; true when the copy is whole.
+  bool step(const GramStore& from) noexcept {
+    if (part_ == 0 || from.revision() != revision_) {
+      revision_ = from.revision();
+      part_ = 0;
+    }
+    if (from.is_changing()) {
+      part_ = 0;
+      return false;
+    }
+    if (part_ < from.parts()) copy_.copy_part(from, part_++);
+    return part_ == from.parts();
+  }
+  [[nodiscard]] const GramStore& store() const noexcept { return copy_; }
+
+ private:
+  std::size_t part_{0};
+  std::uint64_t revision_{0};
+  GramStore copy_;
 };
 
 }  // namespace dampline::effect

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dampline/effect/explanation.hpp"
+#include "dampline/effect/conclusion.hpp"
 
 namespace dampline::effect {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "dampline/effect/columns.hpp"
-#include "dampline/effect/effect.hpp"
+#include "dampline/explanation.hpp"
 
 namespace dampline::effect {
 

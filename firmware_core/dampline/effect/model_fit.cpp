@@ -7,6 +7,8 @@
 namespace dampline::effect {
 namespace {
 
+constexpr double kFewestRows = 100.0;
+
 constexpr std::size_t kFolds = 5;
 constexpr double kDependent = 1e-10;
 
@@ -66,6 +68,38 @@ std::size_t above(std::size_t i) noexcept { return i + 1 < kWidths ? i + 1 : i; 
 int sign_column(std::size_t i) noexcept { return kSign + static_cast<int>(i); }
 
 }  // namespace
+
+bool Evidence::load(const GramStore& store) noexcept {
+  count = store.count();
+  rows.fill(0.0);
+  ScaleWeights start{};
+  bool any = false;
+  for (std::size_t s = 0; s < kScales; ++s) {
+    scale[s].clear();
+    for (std::size_t e = 0; e < count; ++e) {
+      scale[s].add(store.entry(e).gram[s]);
+      rows[s] += store.entry(e).rows[s];
+    }
+    const double target = scale[s].at(kTarget, kTarget);
+    if (rows[s] < kFewestRows || !(target > 0.0)) continue;
+    start[s] = rows[s] / target;
+    any = true;
+  }
+  if (any) weigh(store, start);
+  return any;
+}
+
+void Evidence::weigh(const GramStore& store, const ScaleWeights& weights) noexcept {
+  weight = weights;
+  total.clear();
+  for (std::size_t e = 0; e < count; ++e) {
+    entry[e].clear();
+    for (std::size_t s = 0; s < kScales; ++s) {
+      if (weight[s] > 0.0) entry[e].add(store.entry(e).gram[s], weight[s]);
+    }
+    total.add(entry[e]);
+  }
+}
 
 void ModelFitter::project(const Gram& gram, const Terms& terms, int count,
                           Small& out) const noexcept {

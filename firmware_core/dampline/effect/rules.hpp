@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include "dampline/effect/explanation.hpp"
+#include "dampline/effect/conclusion.hpp"
 
 namespace dampline::effect {
 

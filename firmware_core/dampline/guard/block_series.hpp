@@ -67,6 +67,12 @@ class BlockSeries {
     std::array<double, kCapacity> copy = values_;
     return size_ == 0 ? 0.0 : middle(copy, size_);
   }
+  /// The newest `count`, or all where there are fewer.
+  [[nodiscard]] BlockSeries newest(std::size_t count) const noexcept {
+    BlockSeries out = *this;
+    out.drop(size_ - std::min(size_, count));
+    return out;
+  }
   [[nodiscard]] double mean() const noexcept {
     double sum = 0.0;
     for (std::size_t i = 0; i < size_; ++i) sum += values_[i];

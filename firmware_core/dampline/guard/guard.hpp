@@ -5,16 +5,11 @@
 #include <cstdint>
 #include <span>
 
-#include "dampline/guard/code_watch.hpp"
+#include "dampline/guard/channel_watch.hpp"
 #include "dampline/guard/config.hpp"
 #include "dampline/guard/fault_log.hpp"
-#include "dampline/guard/impulse_power.hpp"
-#include "dampline/guard/level_watch.hpp"
-#include "dampline/guard/regularity.hpp"
-#include "dampline/guard/repeat_watch.hpp"
 #include "dampline/guard/spectral_guard.hpp"
 #include "dampline/guard/spike_watch.hpp"
-#include "dampline/guard/step_meter.hpp"
 #include "dampline/guard/wheelset_watch.hpp"
 #include "dampline/result.hpp"
 #include "dampline/sample.hpp"

@@ -23,6 +23,9 @@ constexpr double kLeastT = 4.0;
 constexpr double kLeastGain = 0.0015;
 constexpr double kLeastChange = 0.03;
 constexpr double kStepSignificant = 6.0;
+// Of the live alarm.
+constexpr double kMostOfThreshold = 1.0 / 3.0;  // that one group adds: no alarm from one or two
+constexpr double kLeastShare = 0.5;             // of the other's change: both are the mass
 
 using Model = LawModel<false>;
 using Profile = LawProfile<false>;
@@ -42,6 +45,20 @@ struct Entries {
 
 Gram gram_of(const ScaleFactors& factors, const Profile& law) noexcept {
   return weighted_gram<kUnknowns>(law.fit, factors, MappedColumns<kUnknowns>{law.map});
+}
+
+/// Friction and spring that sums ask for where the law's width is held; false: they do not tell.
+bool level_of(const Gram& g, double width_change, GroupMeter::Group& out) noexcept {
+  constexpr int kF = Model::kCoulomb;
+  constexpr int kK = Model::kStiffness;
+  const auto target = [&](int i) {
+    return g(i, kUnknowns) - width_change * g(i, Model::kWidthChange);
+  };
+  const double determinant = g(kF, kF) * g(kK, kK) - g(kF, kK) * g(kF, kK);
+  if (!(determinant > 0.0)) return false;
+  out.friction_mps2 = (g(kK, kK) * target(kF) - g(kF, kK) * target(kK)) / determinant;
+  out.stiffness_ps2 = (g(kF, kF) * target(kK) - g(kF, kK) * target(kF)) / determinant;
+  return true;
 }
 
 template <int Q>
@@ -147,23 +164,17 @@ void measure_steps(const Entries& entries, const Theta& theta, ParameterDrift& o
   BlockSeries friction;
   BlockSeries stiffness;
   for (std::size_t b = 0; b < entries.count; ++b) {
-    const Gram& g = entries.gram[b];
-    const auto target = [&](int i) {
-      return g(i, kUnknowns) - theta[Model::kWidthChange] * g(i, Model::kWidthChange);
-    };
-    const double determinant = g(0, 0) * g(1, 1) - g(0, 1) * g(0, 1);
-    if (!(determinant > 0.0)) continue;
+    GroupMeter::Group level;
+    if (!level_of(entries.gram[b], theta[Model::kWidthChange], level)) continue;
     const auto tick = static_cast<std::int64_t>(b);
-    friction.add((g(1, 1) * target(0) - g(0, 1) * target(1)) / determinant, tick);
-    stiffness.add((g(0, 0) * target(1) - g(0, 1) * target(0)) / determinant, tick);
+    friction.add(level.friction_mps2, tick);
+    stiffness.add(level.stiffness_ps2, tick);
   }
   out.friction_significance = friction.step().significance;
   out.stiffness_significance = stiffness.step().significance;
 }
 
 }  // namespace
-
-static_assert(Model::kCoulomb == 0 && Model::kStiffness == 1);
 
 ParameterDrift find_parameter_drift(const ScaleFactors& total, EntryList list,
                                     double entry_s) noexcept {
@@ -216,6 +227,94 @@ ParameterDrift find_parameter_drift(const Statistics& statistics, double block_s
   for (std::size_t i = 0; i < count; ++i) list[i] = &statistics.entries[i];
   return find_parameter_drift(statistics.total, EntryList{list.data(), count},
                               block_s * statistics.header.blocks_per_entry);
+}
+
+bool GroupMeter::update(const ScaleFactors& total, Group& out) noexcept {
+  if (total.blocks < due_) return false;
+  due_ = total.blocks + kGroupBlocks;
+  if (!has_law_) {
+    law_ = Profile::make(total, kAllScales);
+    has_law_ = law_.fit.ok;
+    if (has_law_) before_ = gram_of(total, law_);
+    return false;
+  }
+  const Gram now = gram_of(total, law_);
+  const Gram g = now - before_;
+  before_ = now;
+  return level_of(g, law_.fit.theta[Model::kWidthChange], out);
+}
+
+double ChangeWatch::deviation(std::size_t which) const noexcept {
+  if (learnt_ < 2) return 0.0;
+  return std::sqrt(tracks_[which].squares / static_cast<double>(learnt_ - 1));
+}
+
+void ChangeWatch::learn(const Pair& value) noexcept {
+  ++learnt_;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    Track& track = tracks_[i];
+    const double off = value[i] - track.mean;
+    track.mean += off / static_cast<double>(learnt_);
+    track.squares += off * (value[i] - track.mean);
+  }
+}
+
+bool ChangeWatch::judge(std::size_t which, double off, std::int64_t& first) noexcept {
+  Track& track = tracks_[which];
+  const double allowed = std::max(config_.allowance, config_.sigmas * deviation(which));
+  const double most = kMostOfThreshold * config_.threshold;
+  const auto add = [&](double& sum, double beyond, std::int64_t& began) {
+    if (sum <= 0.0) began = groups_;
+    sum = std::max(sum + std::min(beyond, most), 0.0);
+  };
+  add(track.up, off - allowed, track.up_first);
+  add(track.down, -off - allowed, track.down_first);
+  first = track.up > 0.0 ? track.up_first : track.down_first;
+  // Rounding of three parts must not make a fourth.
+  return std::max(track.up, track.down) > (1.0 - 1e-9) * config_.threshold;
+}
+
+double ChangeWatch::mean_since(std::size_t which, std::int64_t first) const noexcept {
+  const std::int64_t from = std::max(first, groups_ - static_cast<std::int64_t>(kKept) + 1);
+  double sum = 0.0;
+  for (std::int64_t group = from; group <= groups_; ++group)
+    sum += newest_[static_cast<std::size_t>(group) % kKept][which];
+  return sum / static_cast<double>(groups_ - from + 1);
+}
+
+ChangeAlarm ChangeWatch::alarm(std::size_t which, std::int64_t first) const noexcept {
+  const double own = mean_since(which, first);
+  const double other = mean_since(1 - which, first);
+  const bool both = own * other > 0.0 && std::abs(other) > kLeastShare * std::abs(own) &&
+                    std::abs(own) > kLeastShare * std::abs(other);
+  if (both) return {DriftingParameter::kMass, first, groups_, std::expm1(-0.5 * (own + other))};
+  return {which == 0 ? DriftingParameter::kFriction : DriftingParameter::kStiffness, first, groups_,
+          std::expm1(own)};
+}
+
+bool ChangeWatch::update(double friction, double stiffness, ChangeAlarm& out) noexcept {
+  if (!(friction > 0.0 && stiffness > 0.0)) return false;
+  const Pair value{std::log(friction), std::log(stiffness)};
+  ++groups_;
+  if (learnt_ < config_.least) {
+    learn(value);
+    return false;
+  }
+  for (std::size_t i = 0; i < value.size(); ++i)
+    newest_[static_cast<std::size_t>(groups_) % kKept][i] = value[i] - tracks_[i].mean;
+  bool quiet = true;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    std::int64_t first = 0;
+    if (judge(i, value[i] - tracks_[i].mean, first)) {
+      out = alarm(i, first);
+      tracks_ = {};
+      learnt_ = 0;
+      return true;
+    }
+    quiet = quiet && tracks_[i].up <= 0.0 && tracks_[i].down <= 0.0;
+  }
+  if (quiet && learnt_ < config_.learn) learn(value);
+  return false;
 }
 
 }  // namespace dampline

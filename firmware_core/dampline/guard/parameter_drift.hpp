@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
+#include "dampline/estimate/law_profile.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/snapshot.hpp"
 
@@ -47,5 +51,90 @@ struct ParameterDrift {
                                                   double entry_s) noexcept;
 [[nodiscard]] ParameterDrift find_parameter_drift(const Statistics& statistics,
                                                   double block_s) noexcept;
+
+/// Level of friction and stiffness of the newest blocks alone, from how the sums over all blocks
+/// have grown: the normal equations of a group are those of now less those of before. The law's
+/// width and the weights of the scales are those of the first blocks and stay. For an infinite
+/// memory only: the sums must not forget.
+class GroupMeter {
+ public:
+  static constexpr std::uint32_t kFirstBlocks = 150;  ///< that fix the law, some 5 minutes
+  static constexpr std::uint32_t kGroupBlocks = 30;   ///< a minute of motion
+
+  struct Group {
+    double friction_mps2{0.0};  ///< Fc / M
+    double stiffness_ps2{0.0};  ///< k / M
+  };
+  /// Blocks in the sums at which update() has something to do.
+  [[nodiscard]] std::uint32_t due() const noexcept { return due_; }
+  /// True when it wrote a group. Some thousand operations; the first time some hundred thousand.
+  bool update(const ScaleFactors& total, Group& out) noexcept;
+
+ private:
+  using Profile = LawProfile<false>;
+  using Gram = Eigen::Matrix<double, Profile::kUnknowns + 1, Profile::kUnknowns + 1>;
+
+  std::uint32_t due_{kFirstBlocks};
+  bool has_law_{false};
+  Profile law_{};
+  Gram before_ = Gram::Zero();
+};
+
+/// Thresholds of the live alarm; changes are relative.
+struct ChangeAlarmConfig {
+  double allowance{0.06};     ///< a change smaller than this is never an alarm
+  double sigmas{4.0};         ///< nor is one within so many deviations of the groups themselves
+  double threshold{0.15};     ///< what is beyond both, summed over groups
+  std::uint32_t least{20};    ///< groups that are learnt from before anything is judged
+  std::uint32_t learn{3600};  ///< groups that make the reference: 60 h of motion, of several days
+};
+
+/// A parameter is not what it was when the alarm learnt it.
+struct ChangeAlarm {
+  DriftingParameter parameter{};
+  std::int64_t first_group{0};  ///< where it began, as far as the sum tells
+  std::int64_t group{0};        ///< when the alarm was given
+  double change{0.0};           ///< relative: -0.3 means 30 % less than before
+};
+
+/// Two-sided cumulative sums (Page, Biometrika 41, 1954) of the logarithms of friction and
+/// stiffness, per unit of mass and from groups of blocks, over what they were when the watch began.
+/// Mass shows as both at once. After an alarm it learns anew, so the next change is reported, too.
+/// Weather moves the level of friction; the watch learns how much during its first days.
+class ChangeWatch {
+ public:
+  explicit ChangeWatch(const ChangeAlarmConfig& config = {}) noexcept : config_{config} {}
+
+  /// Level and stiffness of the next group; both positive, else the group is passed over. True when
+  /// it gave an alarm.
+  bool update(double friction, double stiffness, ChangeAlarm& out) noexcept;
+  /// Groups so far.
+  [[nodiscard]] std::int64_t groups() const noexcept { return groups_; }
+  /// Of the groups that were learnt, relative: of friction and of stiffness.
+  [[nodiscard]] double deviation(std::size_t which) const noexcept;
+
+ private:
+  static constexpr std::size_t kKept = 64;
+  struct Track {
+    double mean{0.0};
+    double squares{0.0};
+    double up{0.0};
+    double down{0.0};
+    std::int64_t up_first{0};  // group at which the sum left zero
+    std::int64_t down_first{0};
+  };
+  using Pair = std::array<double, 2>;
+
+  [[nodiscard]] bool judge(std::size_t which, double off, std::int64_t& first) noexcept;
+  void learn(const Pair& value) noexcept;
+  [[nodiscard]] double mean_since(std::size_t which, std::int64_t first) const noexcept;
+  [[nodiscard]] ChangeAlarm alarm(std::size_t which, std::int64_t first) const noexcept;
+
+  ChangeAlarmConfig config_;
+  std::array<Track, 2> tracks_{};
+  std::uint32_t learnt_{0};
+  std::int64_t groups_{0};
+  std::array<Pair, kKept> newest_{};  // off the reference
+};
 
 }  // namespace dampline

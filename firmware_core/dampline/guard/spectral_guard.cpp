@@ -15,12 +15,12 @@ constexpr std::uint32_t kFirstSegments = 3;  // of the block that finds the dela
 constexpr int kAligned = 2;                  // samples
 constexpr double kSteadyS = 100e-6;          // change of the delay in a block
 constexpr double kGainSignificant = 6.5;     // clean records stay below 4
-constexpr double kAtOnce = 0.6;              // of the range
-constexpr double kLeastGain = 0.012;
+constexpr double kGainAtOnce = 0.6;          // of the range
+constexpr double kLeastGainChange = 0.012;
 constexpr std::size_t kGainBlocks = 7;
-constexpr double kWrongRate = 0.003;
-constexpr int kRateBlocks = 4;       // a timing step is named by then
-constexpr double kNoiseRatio = 3.5;  // of power, 1.9 times the declared deviation
+constexpr double kWrongDelayRatio = 0.003;
+constexpr int kWrongDelayBlocks = 4;  // a timing step is named by then
+constexpr double kNoiseRatio = 3.5;   // of power, 1.9 times the declared deviation
 constexpr std::array<std::size_t, kChannels> kNoiseBlocks{3, 8, 8};  // the wheelsets' scatter more
 // Over the median. Of the frame the power of a block scatters by a third where friction holds it,
 // and a median of the first five may be half of what it should be.
@@ -178,11 +178,11 @@ void SpectralGuard::judge_gain(FaultLog& log) noexcept {
   gain_.add(block.log_gain, (block.first_tick + block.last_tick) / 2);
   if (gain_.size() < kGainBlocks) return;
   const BlockSeries::Step step = gain_.step();
-  if (step.significance <= kGainSignificant || std::abs(step.size) <= kLeastGain) return;
+  if (step.significance <= kGainSignificant || std::abs(step.size) <= kLeastGainChange) return;
   if (step.block + BlockSeries::kSide + 1 > gain_.size()) return;  // wait for one block more
   const std::int64_t tick = (gain_.tick(step.block) + gain_.tick(step.block - 1)) / 2;
   const double change = gain_.change_at(tick);
-  const bool at_once = std::abs(change) > kAtOnce * gain_.range();
+  const bool at_once = std::abs(change) > kGainAtOnce * gain_.range();
   log.report(FaultKind::kGainChange, FaultChannel::kWheelsets,
              log.seconds(at_once ? tick : gain_.tick(0)),
              100.0 * std::expm1(at_once ? change : gain_.change_since(gain_.tick(0))));
@@ -202,8 +202,8 @@ void SpectralGuard::judge_rate(FaultLog& log) noexcept {
   const double delay_s = std::abs(timing_.delay_s());
   if (delay_s == 0.0) return;
   const double ratio = delay_s * config_.speed_mps / config_.wheelbase_m;
-  wrong_rate_blocks_ = std::abs(ratio - 1.0) > kWrongRate ? wrong_rate_blocks_ + 1 : 0;
-  if (wrong_rate_blocks_ < kRateBlocks) return;
+  wrong_rate_blocks_ = std::abs(ratio - 1.0) > kWrongDelayRatio ? wrong_rate_blocks_ + 1 : 0;
+  if (wrong_rate_blocks_ < kWrongDelayBlocks) return;
   log.report(FaultKind::kWrongSampleRate, FaultChannel::kAll,
              log.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
 }
@@ -239,8 +239,7 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
     const double not_noise = c > 0 ? kLevelDoubt * block.incoherent + impulses : 0.0;
     level_[c].add(std::max(block.noise[c] - not_noise, 0.0), middle);
     if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
-    BlockSeries newest = level_[c];
-    newest.drop(newest.size() - std::min<std::size_t>(newest.size(), kNoiseBlocks[c] + 1));
+    const BlockSeries newest = level_[c].newest(kNoiseBlocks[c] + 1);
     if (c > 0 && log.has(FaultKind::kSoftSaturation)) continue;  // it makes overtones
     const double noise_mps2 = std::sqrt(newest.median() * 0.5 * config_.sample_rate_hz);
     // Second differences of white noise have the root of six times its deviation; impacts do not

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -69,6 +71,80 @@ class SpikeWatch {
   std::size_t candidate_count_{0};
   Candidates closed_{};  // of the segment that ended, to be judged one a call
   std::size_t closed_count_{0};
+};
+
+/// Whether events come at multiples of one interval, as wheel flats and rail joints do and wrong
+/// samples do not. Sees the newest eight intervals.
+class Regularity {
+ public:
+  void add(std::int64_t tick) noexcept {
+    if (any_) intervals_[count_++ % kKept] = std::abs(tick - last_);
+    any_ = true;
+    last_ = tick;
+  }
+  [[nodiscard]] bool regular() const noexcept {
+    if (count_ < kKept) return false;
+    const std::int64_t base = *std::min_element(intervals_.begin(), intervals_.end());
+    if (base < kLeastTicks) return false;
+    std::size_t fit = 0;
+    for (const std::int64_t interval : intervals_) {
+      const double turns = static_cast<double>(interval) / static_cast<double>(base);
+      if (std::abs(turns - std::round(turns)) < kTolerance) ++fit;
+    }
+    return fit >= kFit;
+  }
+
+ private:
+  static constexpr std::size_t kKept = 8;
+  static constexpr std::size_t kFit = 7;
+  static constexpr std::int64_t kLeastTicks = 12;
+  static constexpr double kTolerance = 0.12;
+  std::array<std::int64_t, kKept> intervals_{};
+  std::size_t count_{0};
+  bool any_{false};
+  std::int64_t last_{0};
+};
+
+/// How much of a channel's fast motion comes in impulses, as the power of white noise that would
+/// have it. The sixth difference passes what is above a third of the rate; of normal motion its
+/// mean square is that which its median tells, of wheel flats it is more. So noise, which comes all
+/// the time, differs from flats too weak to be seen one by one.
+class ImpulsePower {
+ public:
+  void update(double accel_mps2) noexcept {
+    std::array<double, kOrder + 1> difference{};
+    difference[0] = accel_mps2;
+    for (std::size_t i = 0; i < kOrder; ++i) difference[i + 1] = difference[i] - last_[i];
+    last_ = difference;
+    if (seen_ < kOrder) {
+      ++seen_;
+      return;
+    }
+    const double size = std::abs(difference[kOrder]);
+    sum_squares_ += size * size;
+    sizes_.add(static_cast<std::uint64_t>(std::min(size, kMostMps2) / kUnitMps2));
+  }
+  void restart() noexcept { seen_ = 0; }
+  /// Of the samples since the last call, (m/s^2)^2.
+  [[nodiscard]] double take() noexcept {
+    const auto count = static_cast<double>(sizes_.count());
+    const double usual = kMadToSigma * kUnitMps2 * sizes_.median();
+    const double power = count > 0.0 ? (sum_squares_ / count - usual * usual) / kWhiteGain : 0.0;
+    sizes_.clear();
+    sum_squares_ = 0.0;
+    return std::max(power, 0.0);
+  }
+
+ private:
+  static constexpr std::size_t kOrder = 6;
+  static constexpr double kWhiteGain = 924.0;  // sum of the squared binomials of order 6
+  static constexpr double kMadToSigma = 1.0 / 0.6745;
+  static constexpr double kUnitMps2 = 1e-3;
+  static constexpr double kMostMps2 = 1e6;
+  std::array<double, kOrder + 1> last_{};
+  std::size_t seen_{0};
+  MagnitudeHistogram sizes_;
+  double sum_squares_{0.0};
 };
 
 }  // namespace dampline

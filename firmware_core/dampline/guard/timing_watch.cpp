@@ -21,9 +21,9 @@ constexpr double kSameWay = 0.5;        // of the frame's lag behind all alike
 constexpr double kStraight = 0.3;       // a clock does not change its rate, a driver does
 constexpr double kWholeDelay = 0.03;    // samples: a step this near a whole number of them
 constexpr double kWholeLag = 0.05;
-constexpr double kReachS = 20.0;       // from where a step is sought
-constexpr std::size_t kEnough = 7;     // blocks
-constexpr double kSameChangeS = 60.0;  // changes of speed this close are one
+constexpr double kReachS = 20.0;          // from where a step is sought
+constexpr std::size_t kEnoughBlocks = 7;  // blocks
+constexpr double kSameChangeS = 60.0;     // changes of speed this close are one
 
 double middle_of(double a, double b, double c) noexcept {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
@@ -55,9 +55,7 @@ void TimingWatch::add_block(const BlockFigures& block, bool has_delay) noexcept 
 
 double TimingWatch::delay_s() const noexcept {
   if (delay_.size() < BlockSeries::kSide) return 0.0;
-  BlockSeries newest = delay_;
-  if (newest.size() > 6) newest.drop(newest.size() - 6);
-  return newest.median();
+  return delay_.newest(6).median();
 }
 
 double TimingWatch::slope(const BlockSeries& series) const noexcept {
@@ -135,7 +133,7 @@ TimingWatch::Cause TimingWatch::cause_of(double delay_s, const std::array<double
 
 // True when the change explains what the frame's lag does as well.
 bool TimingWatch::judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept {
-  if (delay_.size() < kEnough) return false;
+  if (delay_.size() < kEnoughBlocks) return false;
   const BlockSeries::Step step = delay_.step();
   if (step.significance <= kSignificant || std::abs(step.size) <= kLeastDelayS) return false;
   if (step.block + BlockSeries::kSide + 1 > delay_.size()) return true;  // wait for one block more
@@ -183,7 +181,7 @@ void TimingWatch::take_speed_change(std::int64_t tick, GuardInputs& inputs) noex
 
 void TimingWatch::judge_frame(FaultLog& log) noexcept {
   const BlockSeries& lag = lag_[0];
-  if (lag.size() < kEnough) return;
+  if (lag.size() < kEnoughBlocks) return;
   const BlockSeries::Step step = lag.step();
   if (step.significance <= kSignificant || std::abs(step.size) <= kLeastLagS) return;
   const std::size_t b = step.block;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/extract.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "dampline/sample/channel.hpp"
+#include "dampline/sample/signal.hpp"
 
 namespace dampline {
 namespace {

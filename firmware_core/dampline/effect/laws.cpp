@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/effect_laws.hpp"
+#include "dampline/effect/laws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +20,13 @@ double decay(double x) noexcept {
 
 }  // namespace
 
-void EffectLaws::reset() noexcept {
+void Laws::reset() noexcept {
   any_ = false;
   zeta_.fill(0.0);
   pitch_.reset();
 }
 
-void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
+void Laws::friction(const Point& p, LawValues& out) const noexcept {
   const double v = p.velocity_mps;
   const double speed = std::abs(v);
   for (std::size_t i = 0; i < kWidths; ++i) {
@@ -54,7 +54,7 @@ void EffectLaws::friction(const Point& p, LawValues& out) const noexcept {
   }
 }
 
-void EffectLaws::stiffness(double y, LawValues& out) const noexcept {
+void Laws::stiffness(double y, LawValues& out) const noexcept {
   out[kSquare] = single(y * y);
   out[kCube] = single(y * y * y);
   out[kMagnitude] = single(std::abs(y));
@@ -65,7 +65,7 @@ void EffectLaws::stiffness(double y, LawValues& out) const noexcept {
   }
 }
 
-void EffectLaws::memory(const Point& p, double sign, LawValues& out) noexcept {
+void Laws::memory(const Point& p, double sign, LawValues& out) noexcept {
   const double y = p.deflection_m;
   if (!any_) {
     any_ = true;
@@ -90,7 +90,7 @@ void EffectLaws::memory(const Point& p, double sign, LawValues& out) noexcept {
   }
 }
 
-LawValues EffectLaws::operator()(const Point& point) noexcept {
+LawValues Laws::operator()(const Point& point) noexcept {
   LawValues out;
   pitch_.update(point.velocity_mps, point.turn_mps2);
   friction(point, out);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/guard/code_watch.hpp"
+#include "dampline/guard/channel_watch.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace dampline {
 namespace {
@@ -15,10 +16,15 @@ constexpr double kPileFloor = 3.0;
 // In a sound record the two counts differ by chance: by this many deviations at least in a pile.
 constexpr double kPileDeviations = 5.0;
 // Bits are judged where a channel spans this many codes.
-constexpr std::int64_t kEnough = 600;  // samples in a block
+constexpr std::int64_t kEnoughSamples = 600;  // samples in a block
 constexpr std::int64_t kSpan = 24;
 constexpr std::int64_t kNarrow = 40;    // of a pile's width: spans are at least this many
 constexpr std::int64_t kSameLevel = 2;  // codes
+
+constexpr double kLeastMps2 = 0.25;  // clean records of simulated cars stay below 0.034
+constexpr double kTimesMad = 10.0 * 1.4826;
+constexpr double kLevelUnitMps2 = 1e-4;
+constexpr std::uint32_t kEnoughSeconds = 12;  // differences before their median means something
 
 }  // namespace
 
@@ -79,7 +85,7 @@ CodeVerdict CodeWatch::close() noexcept {
   CodeVerdict verdict;
   if (!any_) return verdict;
   const std::int64_t span = top_.extreme() + bottom_.extreme();
-  if (span >= kSpan && samples_ >= kEnough) {
+  if (span >= kSpan && samples_ >= kEnoughSamples) {
     verdict.dead_bits = std::countr_zero(moved_bits_);
     const bool top = judge(top_pile_, top_, span);
     const bool bottom = judge(bottom_pile_, bottom_, span);
@@ -95,6 +101,44 @@ CodeVerdict CodeWatch::close() noexcept {
   top_.clear();
   bottom_.clear();
   return verdict;
+}
+
+void LevelWatch::restart() noexcept {
+  samples_ = 0;
+  sum_ = 0.0;
+  seconds_ = 0;
+  since_peak_ = -1;
+}
+
+bool LevelWatch::update(std::int64_t tick, double accel_mps2, LevelJump& jump) noexcept {
+  sum_ += accel_mps2;
+  if (++samples_ < second_) return false;
+  std::move(mean_.begin() + 1, mean_.end(), mean_.begin());
+  mean_.back() = sum_ / static_cast<double>(samples_);
+  samples_ = 0;
+  sum_ = 0.0;
+  seconds_ = std::min(seconds_ + 1, kSeconds);
+  return seconds_ == kSeconds && end_second(tick, jump);
+}
+
+bool LevelWatch::end_second(std::int64_t tick, LevelJump& jump) noexcept {
+  double difference = 0.0;
+  for (std::size_t i = 0; i < kSide; ++i) difference += mean_[kSide + 1 + i] - mean_[i];
+  difference /= static_cast<double>(kSide);
+  const double size = std::abs(difference);
+  differences_.add(static_cast<std::uint64_t>(std::lround(std::min(size, 1e4) / kLevelUnitMps2)));
+  const double limit = std::max(kLeastMps2, kTimesMad * kLevelUnitMps2 * differences_.median());
+  if (differences_.count() >= kEnoughSeconds && size > limit &&
+      (since_peak_ < 0 || size > std::abs(peak_.size_mps2))) {
+    const auto back = static_cast<std::int64_t>(2 * kSide + 1) * second_ / 2;
+    peak_ = {.tick = tick - back, .size_mps2 = difference};
+    since_peak_ = 0;
+    return false;
+  }
+  if (since_peak_ < 0 || ++since_peak_ < static_cast<int>(kSide)) return false;
+  jump = peak_;
+  since_peak_ = -1;
+  return true;
 }
 
 }  // namespace dampline

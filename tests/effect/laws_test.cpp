@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/effect_laws.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "dampline/effect/laws.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -18,8 +18,8 @@ Point moving(double deflection_m, double velocity_mps) {
   return p;
 }
 
-TEST(EffectLaws, PolynomialsAndContactsAreWhatTheyAreCalled) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, PolynomialsAndContactsAreWhatTheyAreCalled) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const LawValues up = laws(moving(2.5e-3, 0.05));
   EXPECT_FLOAT_EQ(up[kSquare], 6.25e-6F);
   EXPECT_FLOAT_EQ(up[kCube], 15.625e-9F);
@@ -35,15 +35,15 @@ TEST(EffectLaws, PolynomialsAndContactsAreWhatTheyAreCalled) {
   EXPECT_FLOAT_EQ(down[kProgressiveAbsolute], -2.5e-3F);  // |y| sign v
 }
 
-TEST(EffectLaws, StribeckFrictionFadesByItsSpeed) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, StribeckFrictionFadesByItsSpeed) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const LawValues out = laws(moving(0.0, 0.024));
   for (std::size_t i = 0; i < kStribeckSpeeds; ++i)
     EXPECT_NEAR(out[kStribeck + at(i)], std::exp(-0.024 / kStribeckMps[i]), 1e-6);
 }
 
-TEST(EffectLaws, TangentsAreTheSlopeOfTheSign) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, TangentsAreTheSlopeOfTheSign) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const int column = kSign + 3;
   ASSERT_EQ(kWidthMps[3], kInnerWidthMps);
   constexpr double kStepMps = 1e-4;
@@ -61,8 +61,8 @@ TEST(EffectLaws, TangentsAreTheSlopeOfTheSign) {
   }
 }
 
-TEST(EffectLaws, DahlFrictionBuildsUpOverItsDistance) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, DahlFrictionBuildsUpOverItsDistance) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const double step_m = 1e-6;
   double y = 0.0;
   static_cast<void>(laws(moving(y, 0.01)));
@@ -77,8 +77,8 @@ TEST(EffectLaws, DahlFrictionBuildsUpOverItsDistance) {
   }
 }
 
-TEST(EffectLaws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const double gap_m = kBacklashGap[4] * kScaleM;
   const int column = kBacklash + 4;
   double y = 0.0;
@@ -96,8 +96,8 @@ TEST(EffectLaws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
   }
 }
 
-TEST(EffectLaws, PitchTurnsAroundNoFrictionUntilOneDamperSlidesBack) {
-  EffectLaws laws{{.scale_m = kScaleM}, kStepS};
+TEST(Laws, PitchTurnsAroundNoFrictionUntilOneDamperSlidesBack) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
   const Point p = moving(0.0, 0.02);
   EXPECT_NEAR(laws(p)[kPitchSign], 1.0, 1e-6);  // nothing turns the frame
   Point turned = p;

@@ -6,32 +6,10 @@
 
 #include "dampline/effect/grids.hpp"
 #include "dampline/effect/model_fit.hpp"
+#include "dampline/explanation.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::effect {
-
-enum class Conclusion : std::uint8_t {
-  kNotReady,         ///< too little data
-  kComplete,         ///< nothing passes, and what is left is not more than the sensors make
-  kExplained,        ///< effects were added and what is left is near the floor
-  kPartlyExplained,  ///< effects were added, something is left
-  kUnexplained,      ///< something real is left that no effect explains
-};
-[[nodiscard]] const char* name_of(Conclusion conclusion) noexcept;
-
-struct EffectParameter {
-  const char* name{""};
-  Estimate estimate;
-  const char* unit{""};
-};
-
-struct RunnerUp {
-  Effect effect{Effect::kUnknown};
-  double held_out_nmse{0.0};
-  double gain{0.0};
-  double block_t{0.0};
-  double coefficient_t{0.0};
-};
 
 /// One effect that was added.
 struct Step {
@@ -93,6 +71,9 @@ inline constexpr double kIncompleteAbove = 1.5;
 /// Decides the conclusion from the steps and the floor. `impacts`: blows in the input, which every
 /// model leaves a little of.
 void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
+
+/// Fills in the physical parameters of every step and of base and final model.
+void describe(double moving_mass_kg, Explanation& out) noexcept;
 
 /// The base and what was added to it that has memory.
 [[nodiscard]] Model remembering_part(const Explanation& explanation) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/effect_rows.hpp"
+#include "dampline/effect/rows.hpp"
 
 #include <cmath>
 
@@ -19,7 +19,7 @@ constexpr double kFourthAtZero = 672.0;
 
 }  // namespace
 
-EffectRows::EffectRows(double sample_rate_hz) noexcept : bank_{sample_rate_hz} {
+Rows::Rows(double sample_rate_hz) noexcept : bank_{sample_rate_hz} {
   std::size_t start = 0;
   for (std::size_t s = 0; s < kScales; ++s) {
     const int half = bank_.half(s);
@@ -34,8 +34,8 @@ EffectRows::EffectRows(double sample_rate_hz) noexcept : bank_{sample_rate_hz} {
   }
 }
 
-void EffectRows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
-                        Row& row) const noexcept {
+void Rows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
+                  Row& row) const noexcept {
   const auto psi = bank_.lumped_psi(scale);
   const auto once = bank_.lumped_psi1(scale);
   const auto twice = bank_.lumped_double_integral(scale);
@@ -64,7 +64,7 @@ void EffectRows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw
   row[kTarget] = -sum[7];
 }
 
-Row EffectRows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) const noexcept {
+Row Rows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) const noexcept {
   Sampled sum = Sampled::Zero();
   std::size_t at = index(tick - bank_.half(scale));
   for (const double psi : bank_.psi(scale)) {
@@ -77,7 +77,7 @@ Row EffectRows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) co
   return row;
 }
 
-double EffectRows::still_share(std::size_t scale, std::int64_t tick) const noexcept {
+double Rows::still_share(std::size_t scale, std::int64_t tick) const noexcept {
   return bank_.marked_share(scale, still_, index(tick - bank_.half(scale)));
 }
 

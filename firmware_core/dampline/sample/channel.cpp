@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/channel_lane.hpp"
+#include "dampline/sample/channel.hpp"
 
 #include <algorithm>
 #include <limits>
 
 namespace dampline {
+
 ChannelLane::ChannelLane(const ChannelConfig& config, double rate_hz) noexcept
     : config_{config},
       accel_{config.accel},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/counter_sequence.hpp"
+#include "dampline/sample/ticks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,16 @@
 
 namespace dampline {
 namespace {
+
 constexpr int kConfirmingFrames = 4;
 constexpr double kPeriodRange = 0.5;
 constexpr double kCertain = 0.49;  // of a wrap: a next counter cannot be another wrap's
+
+// A reading this little after the one before is the same instant once more, in ticks.
+constexpr double kRepeatedTicks = 0.25;
+// A pause this long is a gap; nobody catches up with it.
+constexpr std::int64_t kPauseTicks = 16;
+
 }  // namespace
 
 CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
@@ -82,6 +89,64 @@ Placement CounterSequence::suspect(std::int64_t tick, std::uint64_t counter,
   }
   const bool behind = tick <= newest() && static_cast<double>(newest() - tick) < kBurstTicks;
   return {behind ? Place::kBehind : Place::kOutOfStep, tick, streak_};
+}
+
+void TimeSequence::start(std::int64_t tick, std::int64_t time_ns) noexcept {
+  line_.start(tick, time_ns);
+  newest_ = tick;
+  held_count_ = released_ = 0;
+}
+
+bool TimeSequence::push(const Reading& reading) noexcept {
+  const double due_tick = line_.tick_at(reading.time_ns);
+  if (due_tick < static_cast<double>(newest_) + kRepeatedTicks) return false;
+  held_[held_count_++] = reading;
+  const auto nearest = static_cast<std::int64_t>(std::llround(due_tick));
+  const auto waiting = static_cast<std::int64_t>(held_count_);
+  if (nearest - newest_ <= waiting) {
+    release(true);
+  } else if (held_count_ == kHeld || nearest - newest_ > kPauseTicks) {
+    release(false);
+  }
+  return true;
+}
+
+void TimeSequence::release(bool in_sequence) noexcept {
+  for (std::size_t i = 0; i < held_count_; ++i) {
+    Reading& reading = held_[i];
+    const auto nearest = static_cast<std::int64_t>(std::llround(line_.tick_at(reading.time_ns)));
+    reading.tick = in_sequence ? newest_ + 1 : std::max(nearest, newest_ + 1);
+    newest_ = reading.tick;
+    line_.update(reading.tick, reading.time_ns);
+  }
+  released_ = held_count_;
+  held_count_ = 0;
+}
+
+std::optional<Reading> TimeSequence::pop() noexcept {
+  if (released_ == 0) return std::nullopt;
+  const Reading first = held_[0];
+  std::move(held_.begin() + 1, held_.begin() + static_cast<std::ptrdiff_t>(released_),
+            held_.begin());
+  --released_;
+  return first;
+}
+
+void TimeSequence::flush() noexcept { release(false); }
+
+void RateMeter::begin_segment() noexcept { count_ = 0.0; }
+
+MeasuredRate RateMeter::measured() const noexcept {
+  MeasuredRate result{0.0, 0.0, samples_};
+  const double freedom = static_cast<double>(samples_) - static_cast<double>(segments_) - 1.0;
+  if (!(freedom > 0.0) || !(sum_tt_ > 0.0)) return result;
+  const double slope_ns = sum_td_ / sum_tt_;
+  const double period_ns = nominal_period_ns_ + slope_ns;
+  if (!(period_ns > 0.0)) return result;
+  const double residual_ns2 = std::max(sum_dd_ - slope_ns * sum_td_, 0.0) / freedom;
+  result.rate_hz = 1e9 / period_ns;
+  result.std_hz = result.rate_hz * std::sqrt(residual_ns2 / sum_tt_) / period_ns;
+  return result;
 }
 
 }  // namespace dampline

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/effect/effect_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 #include <numbers>
+
+#include "dampline/effect/rows.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -40,7 +40,7 @@ class HarmonicRows : public testing::Test {
   }
 
   RawRing raw_{kRateHz};
-  EffectRows rows_{kRateHz};
+  Rows rows_{kRateHz};
 };
 
 TEST_F(HarmonicRows, IntegralsAndDerivativesComeWithoutIntegration) {
@@ -62,7 +62,7 @@ TEST_F(HarmonicRows, IntegralsAndDerivativesComeWithoutIntegration) {
 }
 
 TEST_F(HarmonicRows, StandstillIsWeighedByTheWindow) {
-  EffectRows::Sampled zero = EffectRows::Sampled::Zero();
+  Rows::Sampled zero = Rows::Sampled::Zero();
   for (std::int64_t n = 0; n < 600; ++n) rows_.set(n, zero, n >= 300);
   EXPECT_NEAR(rows_.still_share(3, 300), 0.5, 0.1);
   EXPECT_EQ(rows_.still_share(3, 200), 0.0);

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "dampline/numeric/log_histogram.hpp"
+#include "dampline/sample.hpp"
+
+namespace dampline {
+
+/// The resolution of a channel for which none is declared: the least change between two samples. A
+/// moving channel changes by one code within seconds.
+class StepMeter {
+ public:
+  /// Of one sample of the channel.
+  void update(double value) noexcept {
+    const double change = std::abs(value - last_);
+    last_ = value;
+    if (!any_) {
+      any_ = true;
+    } else if (change > kSame) {
+      least_ = least_ > 0.0 ? std::min(least_, change) : change;
+    }
+  }
+  /// In the channel's unit; 0: it never changed.
+  [[nodiscard]] double step() const noexcept { return least_; }
+
+ private:
+  static constexpr double kSame = 1e-9;  // rounding of a value that was printed
+  bool any_{false};
+  double last_{0.0};
+  double least_{0.0};
+};
+
+/// The codes of one end of a channel's range, in one block: how many stand at the extreme and how
+/// many just inside. Where a sensor clips they pile up at the extreme.
+class RangeEnd {
+ public:
+  static constexpr std::size_t kDepth = 16;  ///< codes kept
+
+  /// `code` grows outwards. Constant time but for a shift by at most kDepth.
+  void add(std::int64_t code) noexcept;
+  void clear() noexcept { any_ = false; }
+  [[nodiscard]] bool any() const noexcept { return any_; }
+  [[nodiscard]] std::int64_t extreme() const noexcept { return extreme_; }
+  /// Of the `width` outermost codes, and of the `width` next to them.
+  [[nodiscard]] std::uint32_t outer(std::size_t width) const noexcept { return sum(0, width); }
+  [[nodiscard]] std::uint32_t inner(std::size_t width) const noexcept { return sum(width, width); }
+
+ private:
+  [[nodiscard]] std::uint32_t sum(std::size_t first, std::size_t width) const noexcept;
+  bool any_{false};
+  std::int64_t extreme_{0};
+  std::array<std::uint32_t, kDepth> count_{};  // by distance from the extreme
+};
+
+/// What a block's codes say of one channel.
+struct CodeVerdict {
+  int dead_bits{0};            ///< lowest bits that did not move although the channel did
+  bool clips{false};           ///< values pile up at an end
+  std::int64_t clip_code{0};   ///< the level
+  std::int64_t clip_count{0};  ///< samples there in this block
+  std::int64_t clip_first{0};  ///< tick of the block's first sample at its extreme
+};
+
+/// One channel, code by code: bits that do not move, a pile at the end of the range.
+class CodeWatch {
+ public:
+  void update(std::int64_t tick, std::int64_t code) noexcept;
+  /// Judges the block and begins the next one.
+  [[nodiscard]] CodeVerdict close() noexcept;
+
+ private:
+  static constexpr std::array<std::size_t, 3> kWidths{1, 2, 4};
+  struct Pile {  // of all blocks so far, the one sample that each extreme has by definition left
+                 // out
+    std::array<double, 3> outer{};
+    std::array<double, 3> inner{};
+    bool found{false};
+    std::int64_t level{0};
+  };
+  [[nodiscard]] static bool judge(Pile& pile, const RangeEnd& end, std::int64_t span) noexcept;
+
+  RangeEnd top_;
+  RangeEnd bottom_;
+  Pile top_pile_;
+  Pile bottom_pile_;
+  std::int64_t samples_{0};
+  bool any_{false};
+  std::int64_t first_code_{0};
+  std::uint64_t moved_bits_{0};
+  std::int64_t top_tick_{0};
+  std::int64_t bottom_tick_{0};
+};
+
+/// Counts samples that say in all channels what the one before said. Without a counter that is how
+/// a repeated sample looks; by chance it happens too, as often as with the sample before that.
+class RepeatWatch {
+ public:
+  using Codes = std::array<std::int64_t, kChannels>;
+  /// True when the codes are those of the sample before.
+  bool update(const Codes& codes) noexcept {
+    const bool same = seen_ >= 1 && codes == last_[0];
+    const bool chance = seen_ >= 2 && codes == last_[1];
+    if (same) repeated_ += 1.0;
+    if (chance) chance_ += 1.0;
+    last_[1] = last_[0];
+    last_[0] = codes;
+    if (seen_ < 2) ++seen_;
+    return same;
+  }
+  /// More than chance explains, with kAllowed on top.
+  [[nodiscard]] bool found() const noexcept {
+    return repeated_ >= kAllowed + 4.0 * std::sqrt(chance_ + 1.0) + kChance * chance_;
+  }
+  [[nodiscard]] double excess() const noexcept { return repeated_ - chance_; }
+  /// Once a block: what is long ago counts less, with a time constant of some 40 blocks.
+  void forget() noexcept {
+    repeated_ *= kKept;
+    chance_ *= kKept;
+  }
+  void clear() noexcept { repeated_ = chance_ = 0.0; }
+  void restart() noexcept { seen_ = 0; }
+
+ private:
+  static constexpr double kAllowed = 5.0;
+  static constexpr double kChance = 5.0;  // of smooth motion the nearer sample is the more alike
+  static constexpr double kKept = 0.975;
+  std::array<Codes, 2> last_{};
+  int seen_{0};
+  double repeated_{0.0};
+  double chance_{0.0};
+};
+
+/// A jump of a channel's zero.
+struct LevelJump {
+  std::int64_t tick{0};
+  double size_mps2{0.0};
+};
+
+/// One channel's means over a second; a jump is a difference between the five seconds after and the
+/// five before one second that stands out from all such differences.
+class LevelWatch {
+ public:
+  explicit LevelWatch(std::int64_t second_samples) noexcept : second_{second_samples} {}
+  /// True when it wrote a jump, some 10 s after it happened.
+  bool update(std::int64_t tick, double accel_mps2, LevelJump& jump) noexcept;
+  void restart() noexcept;
+
+ private:
+  static constexpr std::size_t kSide = 5;
+  static constexpr std::size_t kSeconds = 2 * kSide + 1;
+  [[nodiscard]] bool end_second(std::int64_t tick, LevelJump& jump) noexcept;
+
+  std::int64_t second_;
+  std::int64_t samples_{0};
+  double sum_{0.0};
+  std::array<double, kSeconds> mean_{};  // oldest first
+  std::size_t seconds_{0};
+  MagnitudeHistogram differences_;  // in 0.1 mm/s^2
+  LevelJump peak_{};                // the largest of a run of outstanding differences
+  int since_peak_{-1};              // seconds; -1: there is none
+};
+
+}  // namespace dampline
