@@ -8,8 +8,8 @@ namespace dampline {
 
 /// What the guards found wrong with the data themselves, so that it is never taken for a property
 /// of the suspension. Plain data; a list of faults has one entry for each kind and channel, at most
-/// kFaultKinds * kFaultChannels. How each kind is found: the room guard/; thresholds and the
-/// records that they come from: docs/faults.md.
+/// kFaultKinds * kFaultChannels. How each kind is found: the room
+/// guard/; what the names mean to a user: docs/faults.md; thresholds: docs/constants.md.
 
 /// What can be wrong with the data before they say anything about the suspension.
 enum class FaultKind : std::uint8_t {
