@@ -10,8 +10,8 @@
 #include "app/error.hpp"
 #include "app/identify/progress.hpp"
 #include "app/identify/source_kind.hpp"
-#include "app/rig/csv_rig_source.hpp"
-#include "app/rig/identify_rig.hpp"
+#include "app/rig/identify.hpp"
+#include "app/rig/record.hpp"
 
 namespace dampline::app {
 namespace {
@@ -44,8 +44,8 @@ Identified identify_rig_file(const Config& config, const SourceOptions& source,
                              bool show_progress) {
   Progress progress{show_progress};
   Identified out;
-  const RigRecord record = csv_rig_record(source.path, config.input, source.skip_bad_lines);
-  out.result = identify_rig(record, config, [&](double share) {
+  const rig::Record record = rig::csv_record(source.path, config.input, source.skip_bad_lines);
+  out.result = rig::identify(record, config, [&](double share) {
     if (progress.due()) progress.show(share, 0.0, "");
   });
   return out;

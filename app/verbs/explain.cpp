@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/diagnosis/rig/explain_rig.hpp"
+#include "app/diagnosis/rig/explain.hpp"
 #include "app/error.hpp"
 #include "app/explain/explain_truck.hpp"
 #include "app/explain/explanation_json.hpp"
 #include "app/identify/recognised_columns.hpp"
 #include "app/identify/record_rate.hpp"
 #include "app/report/stage_report.hpp"
-#include "app/rig/csv_rig_source.hpp"
-#include "app/rig/identify_rig.hpp"
+#include "app/rig/identify.hpp"
+#include "app/rig/record.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/files.hpp"
 #include "app/run/run_toml.hpp"
@@ -70,15 +70,15 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options,
 
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
                              const std::vector<std::string>& notes) {
-  RigExplanation found = explain_rig(
+  rig::Explanation found = rig::explain(
       config, {options.records, options.validation, options.reference, options.skip_bad_lines});
   found.notes.insert(found.notes.begin(), notes.begin(), notes.end());
   std::vector<InputFile> inputs;
   for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
   for (const std::string& path : options.validation)
     inputs.push_back(describe_input(path, "validation"));
-  RunResult first = identify_rig(
-      csv_rig_record(options.records.front(), config.input, options.skip_bad_lines), config);
+  RunResult first = rig::identify(
+      rig::csv_record(options.records.front(), config.input, options.skip_bad_lines), config);
   first.evidence = found.evidence;
   first.notes.insert(first.notes.end(), found.notes.begin(), found.notes.end());
   return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};

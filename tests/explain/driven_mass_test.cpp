@@ -85,8 +85,8 @@ std::string record(const Law& law, const Hysteresis& hysteresis = {}) {
   return out;
 }
 
-RigExplanation explained(const Law& law, const std::string& inertia = "identify",
-                         const Hysteresis& hysteresis = {}) {
+rig::Explanation explained(const Law& law, const std::string& inertia = "identify",
+                           const Hysteresis& hysteresis = {}) {
   Config config;
   config.model.base = {"viscous"};
   config.model.inertia = inertia;
@@ -94,21 +94,21 @@ RigExplanation explained(const Law& law, const std::string& inertia = "identify"
   return dampline::testing::explained(record(law, hysteresis), config);
 }
 
-void expect_the_rest(const RigExplanation& found) {
+void expect_the_rest(const rig::Explanation& found) {
   EXPECT_NEAR(value_of(found, "moving_mass"), kMassKg, 0.01 * kMassKg) << summarize(found);
   EXPECT_NEAR(value_of(found, "stiffness"), kStiffnessNpm, 0.01 * kStiffnessNpm);
   EXPECT_NEAR(value_of(found, "viscous"), kViscous, 0.03 * kViscous);
 }
 
 TEST(ADrivenMass, IsWholeWhereNothingIsMissing) {
-  const RigExplanation found = explained([](double, double) { return 0.0; });
+  const rig::Explanation found = explained([](double, double) { return 0.0; });
   EXPECT_TRUE(found.steps.empty()) << summarize(found);
   EXPECT_EQ(std::string{found.verdict()}, "complete");
   expect_the_rest(found);
 }
 
 TEST(ADrivenMass, HasASpringThatHardens) {
-  const RigExplanation found = explained([](double x, double) { return 4.4e9 * x * x * x; });
+  const rig::Explanation found = explained([](double x, double) { return 4.4e9 * x * x * x; });
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "cubic_stiffness");
   EXPECT_NEAR(value_of(found, "cubic_stiffness"), 4.4e9, 0.02 * 4.4e9);
@@ -117,14 +117,15 @@ TEST(ADrivenMass, HasASpringThatHardens) {
 
 TEST(ADrivenMass, IsToldFromADamperWithoutBeingDeclared) {
   const Law hard = [](double x, double) { return 4.4e9 * x * x * x; };
-  const RigExplanation found = explained(hard, "auto");
+  const rig::Explanation found = explained(hard, "auto");
   ASSERT_FALSE(found.notes.empty());
   EXPECT_NE(found.notes[0].find("An inertia"), std::string::npos) << found.notes[0];
   EXPECT_NEAR(value_of(found, "moving_mass"), kMassKg, 0.02 * kMassKg) << summarize(found);
 }
 
 TEST(ADrivenMass, IsDampedOtherwiseUpAndDown) {
-  const RigExplanation found = explained([](double, double v) { return v > 0.0 ? 7.0 * v : 0.0; });
+  const rig::Explanation found =
+      explained([](double, double v) { return v > 0.0 ? 7.0 * v : 0.0; });
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "asymmetric_viscous");
   EXPECT_NEAR(value_of(found, "viscous_positive"), 13.0, 0.4);
@@ -132,7 +133,7 @@ TEST(ADrivenMass, IsDampedOtherwiseUpAndDown) {
 }
 
 void expect_hysteresis(const Hysteresis& planted) {
-  const RigExplanation found = explained([](double, double) { return 0.0; }, "identify", planted);
+  const rig::Explanation found = explained([](double, double) { return 0.0; }, "identify", planted);
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "presliding_hysteresis");
   EXPECT_STREQ(found.verdict(), "explained") << summarize(found);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/diagnosis/rig/explain_rig.hpp"
+#include "app/diagnosis/rig/explain.hpp"
 #include "app/identify/recognised_columns.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
@@ -19,21 +19,21 @@ inline app::Config two_terms() {
 }
 
 /// What `dampline explain` finds in a rig's CSV text.
-inline app::RigExplanation explained(const std::string& text,
-                                     const app::Config& config = two_terms()) {
+inline app::rig::Explanation explained(const std::string& text,
+                                       const app::Config& config = two_terms()) {
   const TemporaryFile file{text, ".csv"};
   const app::RecognisedColumns seen = app::recognise_columns(config, {file.path(), false});
-  return app::explain_rig(seen.config, {{file.path()}, {}, "", false});
+  return app::rig::explain(seen.config, {{file.path()}, {}, "", false});
 }
 
 /// A parameter of the final model; a failure where it has none of this name.
-inline app::Parameter parameter(const app::RigExplanation& found, const std::string& name) {
+inline app::Parameter parameter(const app::rig::Explanation& found, const std::string& name) {
   for (const app::Parameter& p : found.final.parameters)
     if (p.name == name) return p;
-  ADD_FAILURE() << "no " << name << '\n' << app::summarize(found);
+  ADD_FAILURE() << "no " << name << '\n' << app::rig::summarize(found);
   return {};
 }
-inline double value_of(const app::RigExplanation& found, const std::string& name) {
+inline double value_of(const app::rig::Explanation& found, const std::string& name) {
   return parameter(found, name).value;
 }
 

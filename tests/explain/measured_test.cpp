@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/diagnosis/rig/explain_rig.hpp"
+#include "app/diagnosis/rig/explain.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::app {
@@ -19,7 +19,7 @@ Config example(const std::string& name) {
   return load_config(std::filesystem::path{DAMPLINE_SOURCE_DIR "/app/examples"} / name);
 }
 
-double mean_rrse(const RigFit& fit) {
+double mean_rrse(const rig::Fit& fit) {
   double sum = 0.0;
   for (const double nmse : fit.record_nmse) sum += std::sqrt(nmse);
   return sum / static_cast<double>(fit.record_nmse.size());
@@ -28,7 +28,7 @@ double mean_rrse(const RigFit& fit) {
 TEST(MeasuredDamper, LacksTheMemoryOfItsReversals) {
   if (!std::filesystem::exists(dampline::testing::shared_data() / "friction_damper"))
     GTEST_SKIP() << "no friction_damper in the shared data";
-  RigExplainOptions options;
+  rig::ExplainOptions options;
   for (const char* name :
        {"0.25Hz_0.5in", "0.25Hz_1.5in", "0.25Hz_1in", "0.5Hz_0.5in", "0.5Hz_1.5in", "0.5Hz_1in",
         "1Hz_0.5in", "1Hz_1.5in", "1Hz_1in", "2Hz_0.5in"})
@@ -40,7 +40,7 @@ TEST(MeasuredDamper, LacksTheMemoryOfItsReversals) {
         (dampline::testing::shared_data() / (std::string{"friction_damper/eq_"} + name + ".csv"))
             .string());
   options.reference_column = "F_LuGre_authors_N";
-  const RigExplanation found = explain_rig(example("friction_damper_explain.toml"), options);
+  const rig::Explanation found = rig::explain(example("friction_damper_explain.toml"), options);
 
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.steps[0].effect, "backlash");
@@ -50,7 +50,7 @@ TEST(MeasuredDamper, LacksTheMemoryOfItsReversals) {
   ASSERT_EQ(found.validation.size(), 2U);
   double whole = 0.0;
   double where_reference = 0.0;
-  for (const RigValidated& v : found.validation) {
+  for (const rig::Validated& v : found.validation) {
     ASSERT_TRUE(v.has_reference);
     EXPECT_LT(v.same_rows_rrse, v.reference_rrse) << v.record;
     whole += 0.5 * v.rrse_after;
@@ -79,13 +79,13 @@ std::pair<std::string, std::string> halves_of(const std::filesystem::path& file)
 TEST(MeasuredEmps, LacksTheDirectionOfItsFriction) {
   const auto file = dampline::testing::shared_data() / "emps/emps_train.csv";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no emps in the shared data";
-  RigExplainOptions options;
+  rig::ExplainOptions options;
   const auto [first, second] = halves_of(file);
   const dampline::testing::TemporaryFile fitted{first, ".csv"};
   const dampline::testing::TemporaryFile held_out{second, ".csv"};
   options.records.push_back(fitted.path());
   options.validation.push_back(held_out.path());
-  const RigExplanation found = explain_rig(example("emps_explain.toml"), options);
+  const rig::Explanation found = rig::explain(example("emps_explain.toml"), options);
   ASSERT_EQ(found.steps.size(), 1U);
   EXPECT_EQ(found.steps[0].effect, "asymmetric_viscous");
   EXPECT_DOUBLE_EQ(found.filter_hz, 20.0);

@@ -45,7 +45,7 @@ std::string record_of(const Friction& friction) {
   return text;
 }
 
-void expect_presliding(const RigExplanation& found) {
+void expect_presliding(const rig::Explanation& found) {
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "presliding_hysteresis");
   EXPECT_LT(found.final.fit.held_out_nmse, 0.01 * found.base.fit.held_out_nmse);
@@ -53,7 +53,7 @@ void expect_presliding(const RigExplanation& found) {
 
 TEST(MemoryOfOneTone, OfDahlIsFoundWithItsTravel) {
   double z = 0.0;
-  const RigExplanation found = explained(record_of([&](double step_m) {
+  const rig::Explanation found = explained(record_of([&](double step_m) {
     z += step_m / 0.0017 * (1.0 - z * (step_m < 0.0 ? -1.0 : 1.0));
     return z;
   }));

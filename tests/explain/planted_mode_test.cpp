@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "app/diagnosis/rig/rig_mode.hpp"
+#include "app/diagnosis/rig/series.hpp"
 #include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {
@@ -107,14 +107,14 @@ Force with_mass(double kg) {
   };
 }
 
-RigExplanation explained(const Force& force, std::uint64_t seed, double late_s = 0.0) {
+rig::Explanation explained(const Force& force, std::uint64_t seed, double late_s = 0.0) {
   const dampline::testing::TemporaryFile fitted{record_of(force, seed, late_s), ".csv"};
   const dampline::testing::TemporaryFile other{record_of(force, seed + 1, late_s), ".csv"};
-  return explain_rig(dampline::testing::two_terms(), {{fitted.path()}, {other.path()}, "", false});
+  return rig::explain(dampline::testing::two_terms(), {{fitted.path()}, {other.path()}, "", false});
 }
 
 TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
-  const RigMode mode{11.3, 0.07};
+  const rig::Mode mode{11.3, 0.07};
   constexpr double kIntervalS = 0.004;
   Eigen::VectorXd ramp{500};
   for (Eigen::Index i = 0; i < ramp.size(); ++i)
@@ -134,9 +134,9 @@ TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
 }
 
 TEST(RigMode, OfAFixtureIsFoundAndPredicted) {
-  const std::array cases{RigMode{37.3, 0.06}, RigMode{11.9, 0.035}, RigMode{71.0, 0.11}};
-  for (const RigMode& mode : cases) {
-    const RigExplanation found = explained(behind_fixture(mode.hz, mode.damping), 61);
+  const std::array cases{rig::Mode{37.3, 0.06}, rig::Mode{11.9, 0.035}, rig::Mode{71.0, 0.11}};
+  for (const rig::Mode& mode : cases) {
+    const rig::Explanation found = explained(behind_fixture(mode.hz, mode.damping), 61);
     ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
     EXPECT_EQ(found.steps[0].effect, "unmodelled_mode") << summarize(found);
     EXPECT_NEAR(parameter(found, "unmodelled_mode_frequency").value, mode.hz, 0.02 * mode.hz);
@@ -150,9 +150,9 @@ TEST(RigMode, OfAFixtureIsFoundAndPredicted) {
 }
 
 TEST(RigMode, OfAPassengerIsFoundWithItsMass) {
-  const std::array cases{RigMode{6.7, 0.05}, RigMode{2.1, 0.08}};
-  for (const RigMode& mode : cases) {
-    const RigExplanation found = explained(with_passenger(180.0, mode.hz, mode.damping), 63);
+  const std::array cases{rig::Mode{6.7, 0.05}, rig::Mode{2.1, 0.08}};
+  for (const rig::Mode& mode : cases) {
+    const rig::Explanation found = explained(with_passenger(180.0, mode.hz, mode.damping), 63);
     ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
     EXPECT_EQ(found.steps[0].effect, "unmodelled_mode") << summarize(found);
     const Parameter hz = parameter(found, "unmodelled_mode_frequency");
@@ -163,7 +163,7 @@ TEST(RigMode, OfAPassengerIsFoundWithItsMass) {
 }
 
 TEST(RigMode, FarAboveTheMotionIsAMovingMass) {
-  const RigExplanation found = explained(with_mass(150.0), 65);
+  const rig::Explanation found = explained(with_mass(150.0), 65);
   EXPECT_TRUE(found.steps.empty()) << summarize(found);
   EXPECT_STREQ(found.verdict(), "complete") << summarize(found);
   EXPECT_NEAR(parameter(found, "moving_mass").value, 150.0, 4.0);
@@ -174,7 +174,7 @@ TEST(RigNoise, NeedNotBeWhite) {
   std::mt19937_64 random{71};
   std::normal_distribution<double> normal;
   double colored_n = 0.0;
-  const RigExplanation found = explained(
+  const rig::Explanation found = explained(
       [&](double t, double h) {
         // First order, 25 Hz, 40 N.
         const double kept = std::exp(-2.0 * M_PI * 25.0 * h);
@@ -189,14 +189,14 @@ TEST(RigNoise, NeedNotBeWhite) {
 TEST(RigNoise, IsNotWhatRingsWhereNoModeIsLookedFor) {
   Config config = dampline::testing::two_terms();
   config.model.candidates = {"offset_force"};
-  const RigExplanation found =
+  const rig::Explanation found =
       dampline::testing::explained(record_of(behind_fixture(23.0, 0.1), 73), config);
   EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
 }
 
 TEST(RigSkew, IsAppliedToWhatIsPredicted) {
   constexpr double kLateS = 0.0041;
-  const RigExplanation found =
+  const rig::Explanation found =
       explained([](double t, double h) { return simple(motion_at(t + h)); }, 67, kLateS);
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "time_skew") << summarize(found);

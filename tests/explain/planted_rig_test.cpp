@@ -95,8 +95,8 @@ struct Planted {
   bool spring;
 };
 
-RigExplanation explained(const Law& law, bool spring, std::uint64_t seed,
-                         const std::vector<std::string>& base = {"coulomb", "viscous"}) {
+rig::Explanation explained(const Law& law, bool spring, std::uint64_t seed,
+                           const std::vector<std::string>& base = {"coulomb", "viscous"}) {
   Config config;
   config.model.base = base;
   config.model.stiffness = spring ? "identify" : "auto";
@@ -106,7 +106,7 @@ RigExplanation explained(const Law& law, bool spring, std::uint64_t seed,
 class NamesOnARig : public ::testing::TestWithParam<Planted> {};
 
 TEST_P(NamesOnARig, WhatWasPlanted) {
-  const RigExplanation found = explained(GetParam().law, GetParam().spring, 17);
+  const rig::Explanation found = explained(GetParam().law, GetParam().spring, 17);
   ASSERT_FALSE(found.steps.empty());
   EXPECT_EQ(found.steps[0].effect, GetParam().effect) << summarize(found);
   EXPECT_EQ(found.steps.size(), 1U) << summarize(found);
@@ -172,12 +172,12 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
-  const RigExplanation friction = explained(simple(), false, 24, {"viscous"});
+  const rig::Explanation friction = explained(simple(), false, 24, {"viscous"});
   ASSERT_FALSE(friction.steps.empty());
   EXPECT_EQ(friction.steps[0].effect, "coulomb") << summarize(friction);
   ASSERT_FALSE(friction.steps[0].parameters.empty());
   EXPECT_NEAR(friction.steps[0].parameters[0].value, 300.0, 6.0);
-  const RigExplanation damping = explained(simple(), false, 25, {"coulomb"});
+  const rig::Explanation damping = explained(simple(), false, 25, {"coulomb"});
   ASSERT_FALSE(damping.steps.empty());
   EXPECT_EQ(damping.steps[0].effect, "viscous") << summarize(damping);
   EXPECT_NEAR(damping.steps[0].parameters[0].value, 900.0, 45.0);
@@ -185,7 +185,7 @@ TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
 
 TEST(ARig, LacksNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {21U, 22U, 23U}) {
-    const RigExplanation found = explained(simple(), false, seed);
+    const rig::Explanation found = explained(simple(), false, seed);
     EXPECT_TRUE(found.steps.empty()) << summarize(found);
     EXPECT_STREQ(found.verdict(), "complete");
     EXPECT_LT(found.base.fit.held_out_nmse, 0.01);
@@ -194,7 +194,7 @@ TEST(ARig, LacksNothingWhereNothingIsMissing) {
 
 TEST(ARig, KnowsWhatItsNoiseLeaves) {
   // 3 N of white noise on the force: what is left of a complete law.
-  const RigExplanation found = explained(simple(), false, 51);
+  const rig::Explanation found = explained(simple(), false, 51);
   double squares = 0.0;
   double sum = 0.0;
   double count = 0.0;
@@ -212,7 +212,7 @@ TEST(ARig, KnowsWhatItsNoiseLeaves) {
 
 TEST(ARig, IsToldWhereAFoundLawIsNotTheWholeTruth) {
   // A friction element with a dead slot: no form of the library has its edges.
-  const RigExplanation found = explained(backlash(0.0037), false, 52);
+  const rig::Explanation found = explained(backlash(0.0037), false, 52);
   ASSERT_FALSE(found.steps.empty());
   EXPECT_GT(found.final.left_over_floor(), 1.5);
   EXPECT_STREQ(found.verdict(), "partly_explained");
@@ -220,7 +220,7 @@ TEST(ARig, IsToldWhereAFoundLawIsNotTheWholeTruth) {
 }
 
 TEST(ARig, NamesTwoEffectsRatherThanOneThatStandsForBoth) {
-  const RigExplanation found = explained(
+  const rig::Explanation found = explained(
       [](const Motion& m, double) {
         const double u = std::abs(m.velocity_mps) / 0.011;
         return sign(m.velocity_mps) * (300.0 + 220.0 / (1.0 + u * u)) + 2500.0 * m.velocity_mps;
@@ -249,7 +249,7 @@ TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
 
 TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
   // A force that has nothing to do with the motion.
-  const RigExplanation found = explained(
+  const rig::Explanation found = explained(
       [law = simple(), i = 0](const Motion& m, double s) mutable {
         ++i;
         return law(m, s) + 150.0 * std::sin(0.01131 * i) * std::sin(0.000377 * i * std::sqrt(i));
@@ -272,7 +272,7 @@ TEST(ARig, IsPredictedFromItsMotionAlone) {
     at = end + 1;
   }
   const dampline::testing::TemporaryFile without{kept, ".csv"};
-  const RigExplanation found = explain_rig(
+  const rig::Explanation found = rig::explain(
       dampline::testing::two_terms(), {{fitted.path()}, {other.path(), without.path()}, "", false});
   ASSERT_EQ(found.validation.size(), 2U);
   EXPECT_LT(found.validation[0].rrse_after, 0.5 * found.validation[0].rrse_before);

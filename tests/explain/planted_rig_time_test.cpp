@@ -27,7 +27,7 @@ double velocity_at(double t) {
 }
 double friction_at(double t) { return velocity_at(t) < 0.0 ? -400.0 : 400.0; }
 
-RigExplanation explained(const std::function<double(double)>& force_at, std::uint64_t seed) {
+rig::Explanation explained(const std::function<double(double)>& force_at, std::uint64_t seed) {
   std::mt19937_64 random{seed};
   std::normal_distribution<double> noise;
   std::string text = "time_s,deflection_m,force_n\n";
@@ -41,7 +41,7 @@ RigExplanation explained(const std::function<double(double)>& force_at, std::uin
 
 TEST(ForceOutOfStep, IsNamedWithItsDelay) {
   for (const double late_s : {0.0011, -0.0034, 0.0128}) {  // 0.44, 1.36 and 5.1 samples
-    const RigExplanation found = explained(
+    const rig::Explanation found = explained(
         [late_s](double t) { return friction_at(t - late_s) + 3000.0 * velocity_at(t - late_s); },
         61);
     ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
@@ -55,7 +55,7 @@ TEST(ForceOutOfStep, IsNamedWithItsDelay) {
 }
 
 TEST(ForceOutOfStep, LeavesTheNextEffectToBeFound) {
-  const RigExplanation found = explained(
+  const rig::Explanation found = explained(
       [](double t) {
         const double then = t - 0.0071;
         return friction_at(then) + 3000.0 * velocity_at(then) - 130.0;
@@ -63,13 +63,13 @@ TEST(ForceOutOfStep, LeavesTheNextEffectToBeFound) {
       62);
   ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
   EXPECT_NE(found.steps[0].effect, found.steps[1].effect);
-  for (const RigStep& step : found.steps)
+  for (const rig::Step& step : found.steps)
     EXPECT_TRUE(step.effect == "time_skew" || step.effect == "offset_force") << summarize(found);
 }
 
 TEST(LawThatChanges, IsNamedWithWhatChangesAndHowMuch) {
   // Friction that warms up: by 30 % in the end, most of it early.
-  const RigExplanation slow = explained(
+  const rig::Explanation slow = explained(
       [](double t) {
         return friction_at(t) * (1.0 + 0.3 * (1.0 - std::exp(-t / 25.0))) + 3000.0 * velocity_at(t);
       },
@@ -79,7 +79,7 @@ TEST(LawThatChanges, IsNamedWithWhatChangesAndHowMuch) {
   EXPECT_EQ(slow.steps[0].parameters[0].name, "time_drift_coulomb");
   EXPECT_NEAR(slow.steps[0].parameters[0].value, 22.0, 8.0) << summarize(slow);
   // Damping that is lost at once.
-  const RigExplanation step = explained(
+  const rig::Explanation step = explained(
       [](double t) { return friction_at(t) + (t < 22.7 ? 9000.0 : 6000.0) * velocity_at(t); }, 64);
   ASSERT_FALSE(step.steps.empty()) << summarize(step);
   EXPECT_EQ(step.steps[0].effect, "time_drift") << summarize(step);
@@ -100,7 +100,7 @@ TEST(Impacts, AreCountedAndLeaveTheRestToBeFound) {
     }
     return sum;
   };
-  const RigExplanation found = explained(
+  const rig::Explanation found = explained(
       [&](double t) { return friction_at(t) + 3000.0 * velocity_at(t) + burst(t) - 150.0; }, 65);
   ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "impulsive_input");

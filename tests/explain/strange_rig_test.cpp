@@ -69,7 +69,7 @@ std::string error_of(const std::string& text) {
   return "none";
 }
 
-void expect_quadratic(const RigExplanation& found) {
+void expect_quadratic(const rig::Explanation& found) {
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "quadratic_damping");
   EXPECT_NEAR(found.steps[0].parameters[0].value, 5e4, 2.5e3);
@@ -117,8 +117,8 @@ TEST(AStrangersRig, IsToldOfARateThatIsNotItsOwn) {
   EXPECT_THAT(error_of(with_rate("velocity_mps", &Row::force_n, 1.0)), HasSubstr("expected"));
 }
 
-double named_gain(const RigExplanation& found) {
-  for (const RigStep& step : found.steps)
+double named_gain(const rig::Explanation& found) {
+  for (const rig::Step& step : found.steps)
     if (step.effect == "gain_error") return step.parameters[0].value;
   return 0.0;
 }
@@ -157,10 +157,10 @@ TEST(AStrangersRig, IsResampledWhereItsTimesWander) {
   std::string text = "time_s,deflection_m,force_n\n";
   for (const Row& r : rows(times))
     text += fmt::format("{:.7f},{:.10f},{:.6f}\n", r.time_s, r.deflection_m, r.force_n);
-  const RigExplanation found = explained(text);
+  const rig::Explanation found = explained(text);
   ASSERT_FALSE(found.notes.empty());
   EXPECT_THAT(found.notes[0], HasSubstr("not uniform"));
-  for (const RigStep& s : found.steps) EXPECT_EQ(s.effect, "quadratic_damping");
+  for (const rig::Step& s : found.steps) EXPECT_EQ(s.effect, "quadratic_damping");
   EXPECT_LT(found.final.fit.held_out_nmse, 0.03);
 }
 
@@ -182,7 +182,7 @@ TEST(AStrangersRig, MayHaveASmoothLawAndASpring) {
       text += fmt::format("{:.6f},{:.10f},{:.6f}\n", r.time_s, r.deflection_m,
                           300.0 * std::tanh(r.velocity_mps / width_mps) + 1.1e5 * r.deflection_m +
                               5.0 * noise(random));
-    const RigExplanation found = explained(text);
+    const rig::Explanation found = explained(text);
     EXPECT_TRUE(found.steps.empty()) << summarize(found);
     EXPECT_TRUE(found.is_complete()) << summarize(found);
     ASSERT_FALSE(found.notes.empty());
@@ -201,7 +201,7 @@ TEST(AStrangersRig, IsToldOfAForceThatDrifts) {
     const double drift_n = 240.0 * (r.time_s / 30.0 - 0.5);
     text += fmt::format("{:.6f},{:.10f},{:.6f}\n", r.time_s, r.deflection_m, r.force_n + drift_n);
   }
-  const RigExplanation found = explained(text);
+  const rig::Explanation found = explained(text);
   ASSERT_FALSE(found.steps.empty());
   EXPECT_EQ(found.steps[0].effect, "time_drift");
   EXPECT_EQ(found.steps[0].parameters[0].name, "time_drift_offset");

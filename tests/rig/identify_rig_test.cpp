@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/rig/identify_rig.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +10,8 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "app/rig/csv_rig_source.hpp"
+#include "app/rig/identify.hpp"
+#include "app/rig/record.hpp"
 #include "simulated_rig.hpp"
 
 namespace dampline::test {
@@ -45,18 +44,18 @@ class IdentifyRig : public testing::Test {
     for (std::size_t i = 0; i < rows; ++i) {
       const double t = static_cast<double>(i) / 1000.0;
       const double v = 0.02 * 9.0 * std::cos(9.0 * t) + 0.01 * 17.0 * std::cos(17.0 * t);
-      app::RigLine line{i + 2, t, 0.02 * std::sin(9.0 * t) + 0.01 * std::sin(17.0 * t), 0.0,
-                        std::copysign(500.0, v) + 2000.0 * v};
+      app::rig::Line line{i + 2, t, 0.02 * std::sin(9.0 * t) + 0.01 * std::sin(17.0 * t), 0.0,
+                          std::copysign(500.0, v) + 2000.0 * v};
       if (change(i, line))
         out << line.time_s << ',' << line.deflection_m << ',' << line.force_n << '\n';
     }
   }
   void write(std::size_t rows) {
-    write(rows, [](std::size_t, app::RigLine&) { return true; });
+    write(rows, [](std::size_t, app::rig::Line&) { return true; });
   }
 
   [[nodiscard]] RunResult identify() const {
-    return app::identify_rig(app::csv_rig_record(file_.string(), config_.input, false), config_);
+    return app::rig::identify(app::rig::csv_record(file_.string(), config_.input, false), config_);
   }
   [[nodiscard]] std::string error() const {
     try {
@@ -110,7 +109,7 @@ TEST_F(IdentifyRig, MapsColumnsAndScales) {
   config_.input.scale[index(Column::kForce)] = 3.0;
   config_.input.scale[index(Column::kDeflection)] = 0.5;
   write(
-      20000, [](std::size_t, app::RigLine&) { return true; }, "time_s,qm,volts");
+      20000, [](std::size_t, app::rig::Line&) { return true; }, "time_s,qm,volts");
   const RunResult result = identify();
   EXPECT_NEAR(find(result, "coulomb").value, 1500.0, 15.0);
   EXPECT_NEAR(find(result, "viscous").value, 12000.0, 120.0);
@@ -118,7 +117,7 @@ TEST_F(IdentifyRig, MapsColumnsAndScales) {
 
 TEST_F(IdentifyRig, ReportsBothLevelsWhereTheDirectionsDiffer) {
   config_.model.base = {"coulomb", "viscous"};
-  write(20000, [](std::size_t, app::RigLine& line) {
+  write(20000, [](std::size_t, app::rig::Line& line) {
     line.force_n += 120.0;
     return true;
   });
@@ -128,7 +127,7 @@ TEST_F(IdentifyRig, ReportsBothLevelsWhereTheDirectionsDiffer) {
 }
 
 TEST_F(IdentifyRig, SaysThatAModelIsPoorAndThatASpringWouldHelp) {
-  write(20000, [](std::size_t, app::RigLine& line) {
+  write(20000, [](std::size_t, app::rig::Line& line) {
     line.force_n += 4e4 * line.deflection_m;
     return true;
   });
@@ -143,7 +142,7 @@ TEST_F(IdentifyRig, SaysThatAModelIsPoorAndThatASpringWouldHelp) {
 
 TEST_F(IdentifyRig, ExcludesAndListsGapsAndValuesThatAreNoNumber) {
   config_.model.base = {"coulomb", "viscous"};
-  write(20000, [](std::size_t i, app::RigLine& line) {
+  write(20000, [](std::size_t i, app::rig::Line& line) {
     if (i == 9000) line.force_n = std::numeric_limits<double>::quiet_NaN();
     return i < 5000 || i >= 5500;
   });
@@ -159,7 +158,7 @@ TEST_F(IdentifyRig, ExcludesAndListsGapsAndValuesThatAreNoNumber) {
 
 TEST_F(IdentifyRig, NamesAMissingColumnAndThoseThatAreThere) {
   write(
-      500, [](std::size_t, app::RigLine&) { return true; }, "time_s,x,force_n");
+      500, [](std::size_t, app::rig::Line&) { return true; }, "time_s,x,force_n");
   EXPECT_THAT(error(), testing::AllOf(HasSubstr("deflection_m"), HasSubstr("force_n")));
 }
 
@@ -174,7 +173,7 @@ TEST_F(IdentifyRig, RefusesARecordThatIsTooShortForItsModel) {
 }
 
 TEST_F(IdentifyRig, ResamplesTimeThatIsNotUniform) {
-  write(5000, [](std::size_t i, app::RigLine& line) {
+  write(5000, [](std::size_t i, app::rig::Line& line) {
     if (i > 2000 && i % 3 == 0) line.time_s += 0.0004;
     return true;
   });
@@ -182,7 +181,7 @@ TEST_F(IdentifyRig, ResamplesTimeThatIsNotUniform) {
 }
 
 TEST_F(IdentifyRig, RefusesTimeThatRunsBackwards) {
-  write(5000, [](std::size_t i, app::RigLine& line) {
+  write(5000, [](std::size_t i, app::rig::Line& line) {
     if (i == 3000) line.time_s = 1.0;
     return true;
   });
@@ -190,7 +189,7 @@ TEST_F(IdentifyRig, RefusesTimeThatRunsBackwards) {
 }
 
 TEST_F(IdentifyRig, RefusesARecordWithoutMotion) {
-  write(5000, [](std::size_t, app::RigLine& line) {
+  write(5000, [](std::size_t, app::rig::Line& line) {
     line.deflection_m = 0.25;
     return true;
   });
@@ -198,7 +197,7 @@ TEST_F(IdentifyRig, RefusesARecordWithoutMotion) {
 }
 
 TEST_F(IdentifyRig, RefusesStandardInputBecauseItReadsTheRecordAgain) {
-  EXPECT_THROW((void)app::csv_rig_record("-", {}, false), app::RunError);
+  EXPECT_THROW((void)app::rig::csv_record("-", {}, false), app::RunError);
 }
 
 TEST_F(IdentifyRig, RefusesAModelThatARigCannotHave) {
@@ -225,8 +224,8 @@ RunResult shipped(const std::string& example, const std::string& record) {
   const std::filesystem::path folder = own != nullptr ? own : DAMPLINE_SOURCE_DIR "/../shared/data";
   if (!std::filesystem::exists(folder / record)) return {};
   const Config config = app::load_config(DAMPLINE_SOURCE_DIR "/app/examples/" + example);
-  return app::identify_rig(app::csv_rig_record((folder / record).string(), config.input, false),
-                           config);
+  return app::rig::identify(app::rig::csv_record((folder / record).string(), config.input, false),
+                            config);
 }
 
 TEST(ShippedExamples, EmpsGivesThePublishedParameters) {

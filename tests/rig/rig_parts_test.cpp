@@ -7,13 +7,11 @@
 #include <set>
 
 #include "dampline/numeric/log_histogram.hpp"
-#include "dampline/rig/rig_columns.hpp"
-#include "dampline/rig/rig_config.hpp"
-#include "dampline/rig/rig_identifier.hpp"
-#include "dampline/rig/rig_solution.hpp"
-#include "dampline/rig/rig_survey.hpp"
-#include "dampline/rig/rig_test_function.hpp"
-#include "dampline/rig/smooth_sign.hpp"
+#include "dampline/rig/columns.hpp"
+#include "dampline/rig/config.hpp"
+#include "dampline/rig/fit.hpp"
+#include "dampline/rig/identifier.hpp"
+#include "dampline/rig/survey.hpp"
 
 namespace dampline {
 namespace {
@@ -22,9 +20,9 @@ class RigTestFunction : public testing::TestWithParam<int> {
  protected:
   static constexpr double kInterval = 1e-3;
   template <class Signal>
-  TestFunction::Values against(Signal signal) const {
-    const TestFunction psi{GetParam(), kInterval};
-    TestFunction::Values sum{0.0, 0.0, 0.0};
+  rig::TestFunction::Values against(Signal signal) const {
+    const rig::TestFunction psi{GetParam(), kInterval};
+    rig::TestFunction::Values sum{0.0, 0.0, 0.0};
     for (int j = -psi.half(); j <= psi.half(); ++j) {
       const auto at = psi.at(j);
       const double x = signal(j * kInterval);
@@ -61,8 +59,8 @@ TEST_P(RigTestFunction, LetsHalfThePowerPassAtTheStatedCorner) {
 
 INSTANTIATE_TEST_SUITE_P(HalfSupports, RigTestFunction, testing::Values(7, 8, 12, 24, 100, 512));
 
-TEST(SmoothSign, AveragesTheSignOverTheSample) {
-  const SmoothSign sharp{1e-9};
+TEST(RigMeanSign, AveragesTheSignOverTheSample) {
+  const rig::MeanSign sharp{1e-9};
   EXPECT_EQ(sharp.mean(0.1, 0.2, 0.3), 1.0);
   EXPECT_EQ(sharp.mean(-0.1, -0.2, -0.3), -1.0);
   EXPECT_NEAR(sharp.mean(-1.0, 0.0, 1.0), 0.0, 1e-8);
@@ -70,8 +68,8 @@ TEST(SmoothSign, AveragesTheSignOverTheSample) {
   EXPECT_NEAR(sharp.mean(-0.75, 0.25, 1.25), 0.5, 1e-6);
 }
 
-TEST(SmoothSign, HasSlopeOneOverTheWidthAndAgreesWithANumericalMean) {
-  const SmoothSign smooth{0.01};
+TEST(RigMeanSign, HasSlopeOneOverTheWidthAndAgreesWithANumericalMean) {
+  const rig::MeanSign smooth{0.01};
   EXPECT_NEAR(smooth.mean(1e-6, 1e-6, 1e-6), 1e-4, 1e-9);
   double sum = 0.0;
   constexpr int kSteps = 20000;
@@ -81,10 +79,10 @@ TEST(SmoothSign, HasSlopeOneOverTheWidthAndAgreesWithANumericalMean) {
 }
 
 TEST(RigRamps, SumToTheSpeed) {
-  const RigConfig config;
+  const rig::Config config;
   for (const double speed : {0.0, 0.001, 0.0125, 0.03, 0.099, 0.1, 0.5}) {
     double sum = 0.0;
-    for (const double part : ramps(speed, config.curve_nodes_mps)) sum += part;
+    for (const double part : rig::ramps(speed, config.curve_nodes_mps)) sum += part;
     EXPECT_NEAR(sum, speed, 1e-15);
   }
 }
@@ -102,38 +100,39 @@ TEST(LogHistogram, FindsQuantilesWithinItsBins) {
 TEST(RigFolds, HoldEachFifthOfFiveNeighboursOnce) {
   for (std::size_t group = 0; group < 25; ++group) {
     std::set<std::size_t> folds;
-    for (std::size_t i = 0; i < 5; ++i) folds.insert(fold_of(5 * group + i));
+    for (std::size_t i = 0; i < 5; ++i) folds.insert(rig::fold_of(5 * group + i));
     EXPECT_EQ(folds.size(), 5U);
   }
   bool order_changes = false;
   for (std::size_t group = 1; group < 25; ++group)
-    order_changes |= fold_of(5 * group) != fold_of(0);
+    order_changes |= rig::fold_of(5 * group) != rig::fold_of(0);
   EXPECT_TRUE(order_changes);
 }
 
 TEST(RigConfig, RefusesWhatCannotWork) {
-  EXPECT_TRUE(check(RigConfig{}).ok());
+  EXPECT_TRUE(check(rig::Config{}).ok());
   const auto refused = [](auto change) {
-    RigConfig config;
+    rig::Config config;
     change(config);
     return !check(config).ok();
   };
-  EXPECT_TRUE(refused([](RigConfig& c) { c.sample_rate_hz = 0.0; }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.corner_hz = 400.0; }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.corner_hz = 0.1; }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.corner_hz = std::nan(""); }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.sign_width_mps = 0.0; }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.block_samples = 0; }));
-  EXPECT_TRUE(refused([](RigConfig& c) { c.curve_nodes_mps[3] = c.curve_nodes_mps[2]; }));
-  EXPECT_FALSE(check(RigTerms{false, false, Branches::kNone, Branches::kSeparate, true}).ok());
+  EXPECT_TRUE(refused([](rig::Config& c) { c.sample_rate_hz = 0.0; }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.corner_hz = 400.0; }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.corner_hz = 0.1; }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.corner_hz = std::nan(""); }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.sign_width_mps = 0.0; }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.block_samples = 0; }));
+  EXPECT_TRUE(refused([](rig::Config& c) { c.curve_nodes_mps[3] = c.curve_nodes_mps[2]; }));
+  EXPECT_FALSE(
+      check(rig::Terms{false, false, rig::Branches::kNone, rig::Branches::kSeparate, true}).ok());
 }
 
 TEST(RigSurvey, MeasuresNoiseAndFrequencyOfAHarmonicMotion) {
-  RigSurvey survey{1000.0, false};
+  rig::Survey survey{1000.0, false};
   std::mt19937_64 random{3};
   std::normal_distribution<double> noise{0.0, 5e-6};
   for (std::int64_t tick = 0; tick < 20000; ++tick) {
-    RigSample sample;
+    rig::Sample sample;
     sample.tick = tick;
     sample.deflection_m =
         0.01 * std::sin(0.00942477796 * static_cast<double>(tick)) + noise(random);
@@ -144,11 +143,11 @@ TEST(RigSurvey, MeasuresNoiseAndFrequencyOfAHarmonicMotion) {
 }
 
 TEST(RigSurvey, MeasuresAMotionOfAFewSamples) {
-  RigSurvey survey{1000.0, false};
+  rig::Survey survey{1000.0, false};
   std::mt19937_64 random{3};
   std::normal_distribution<double> noise{0.0, 1e-6};
   for (std::int64_t tick = 0; tick < 20000; ++tick) {
-    RigSample sample;
+    rig::Sample sample;
     sample.tick = tick;
     sample.deflection_m = 1e-3 * std::sin(0.6 * static_cast<double>(tick)) + noise(random);
     survey.update(sample);
@@ -158,8 +157,8 @@ TEST(RigSurvey, MeasuresAMotionOfAFewSamples) {
   EXPECT_TRUE(survey.suggest({}).value().velocity_sharp);
 }
 
-TEST(DerivativeWindow, IsExactForSixthPowersWhereItIsSharp) {
-  const DerivativeWindow window = DerivativeWindow::sharp(0.1);
+TEST(RigDerivativeWindow, IsExactForSixthPowersWhereItIsSharp) {
+  const rig::DerivativeWindow window = rig::DerivativeWindow::sharp(0.1);
   const auto power = [](double t) { return std::pow(t, 6) - 2.0 * std::pow(t, 5) + t; };
   double rate = 0.0;
   for (int j = 1; j <= window.half_width(); ++j)
@@ -168,16 +167,16 @@ TEST(DerivativeWindow, IsExactForSixthPowersWhereItIsSharp) {
 }
 
 TEST(RigSurvey, IsNotReadyWithoutMotion) {
-  RigSurvey survey{1000.0, false};
+  rig::Survey survey{1000.0, false};
   EXPECT_EQ(survey.suggest({}).error(), Errc::kNotReady);
-  RigSample sample;
+  rig::Sample sample;
   for (sample.tick = 0; sample.tick < 1000; ++sample.tick) survey.update(sample);
   EXPECT_EQ(survey.suggest({}).error(), Errc::kNotReady);
 }
 
 TEST(RigIdentifier, FitsInHalfAMebibyte) {
-  RecordProperty("sizeof_rig_identifier", static_cast<int>(sizeof(RigIdentifier)));
-  EXPECT_LE(sizeof(RigIdentifier), 512U * 1024U);
+  RecordProperty("sizeof_rig_identifier", static_cast<int>(sizeof(rig::Identifier)));
+  EXPECT_LE(sizeof(rig::Identifier), 512U * 1024U);
 }
 
 }  // namespace

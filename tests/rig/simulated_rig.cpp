@@ -97,15 +97,15 @@ SimulatedRig::State SimulatedRig::step(State state, double time_s) const {
   return state;
 }
 
-std::vector<RigSample> SimulatedRig::record(double rate_hz, double length_s, const Sensors& sensors,
-                                            std::uint64_t seed) {
-  std::vector<RigSample> out;
+std::vector<rig::Sample> SimulatedRig::record(double rate_hz, double length_s,
+                                              const Sensors& sensors, std::uint64_t seed) {
+  std::vector<rig::Sample> out;
   State state;
   const auto samples = static_cast<std::int64_t>(rate_hz * length_s);
   const auto settle = static_cast<std::int64_t>(2.0 * rate_hz);
   for (std::int64_t tick = -settle; tick < samples; ++tick) {
     if (tick == -settle) state.time_s = static_cast<double>(tick) / rate_hz;
-    RigSample sample;
+    rig::Sample sample;
     sample.tick = tick;
     sample.deflection_m = state.deflection_m;
     sample.force_n = drive_n(state.time_s) + truth_.offset_n;
@@ -115,11 +115,11 @@ std::vector<RigSample> SimulatedRig::record(double rate_hz, double length_s, con
   return measure(std::move(out), sensors, seed);
 }
 
-std::vector<RigSample> measure(std::vector<RigSample> record, const SimulatedRig::Sensors& sensors,
-                               std::uint64_t seed) {
+std::vector<rig::Sample> measure(std::vector<rig::Sample> record,
+                                 const SimulatedRig::Sensors& sensors, std::uint64_t seed) {
   std::mt19937_64 random{seed};
   std::normal_distribution<double> gauss;
-  for (RigSample& sample : record) {
+  for (rig::Sample& sample : record) {
     sample.deflection_m = rounded(sample.deflection_m + sensors.deflection_noise_m * gauss(random),
                                   sensors.deflection_step_m);
     sample.force_n =

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "dampline/rig/rig_sample.hpp"
+#include "dampline/rig/motion.hpp"
 
 namespace dampline::test {
 
@@ -35,8 +35,8 @@ class SimulatedRig {
 
   SimulatedRig(const Truth& truth, std::vector<Tone> tones);
 
-  [[nodiscard]] std::vector<RigSample> record(double rate_hz, double length_s,
-                                              const Sensors& sensors, std::uint64_t seed);
+  [[nodiscard]] std::vector<rig::Sample> record(double rate_hz, double length_s,
+                                                const Sensors& sensors, std::uint64_t seed);
 
  private:
   struct State {
@@ -59,8 +59,8 @@ class SimulatedRig {
 };
 
 /// Adds noise and rounding.
-[[nodiscard]] std::vector<RigSample> measure(std::vector<RigSample> record,
-                                             const SimulatedRig::Sensors& sensors,
-                                             std::uint64_t seed);
+[[nodiscard]] std::vector<rig::Sample> measure(std::vector<rig::Sample> record,
+                                               const SimulatedRig::Sensors& sensors,
+                                               std::uint64_t seed);
 
 }  // namespace dampline::test

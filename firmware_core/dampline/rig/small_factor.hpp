@@ -3,17 +3,17 @@
 #include <array>
 #include <cmath>
 
-#include "dampline/rig/rig_model.hpp"
+#include "dampline/rig/columns.hpp"
 
-namespace dampline {
+namespace dampline::rig {
 
 /// The square-root information of one model, as Information is of all columns: its number of
 /// unknowns is known at run time only. The equation's right-hand side is column size().
 class SmallFactor {
  public:
-  static constexpr int kMax = kMaxRigUnknowns + 1;
+  static constexpr int kMax = kMaxUnknowns + 1;
   using Row = std::array<double, kMax>;
-  using Vector = std::array<double, kMaxRigUnknowns>;
+  using Vector = std::array<double, kMaxUnknowns>;
 
   explicit SmallFactor(int unknowns) noexcept : unknowns_{unknowns} {}
 
@@ -88,4 +88,4 @@ class SmallFactor {
   std::array<Row, kMax> rows_{};
 };
 
-}  // namespace dampline
+}  // namespace dampline::rig

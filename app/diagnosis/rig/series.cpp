@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/rig/series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "app/error.hpp"
+#include "app/rig/record.hpp"
+#include "app/rig/result.hpp"
+#include "dampline/rig/motion.hpp"
+#include "dampline/rig/survey.hpp"
+#include "drivers/csv/reader.hpp"
+
+namespace dampline::app::rig {
+namespace {
+
+constexpr double kFirstPart = 0.25;  // of a period
+
+/// x'' over the first quarter of a period, by a parabola through its mean, its rise and its bend.
+double first_accel(const Eigen::VectorXd& x, double hz, double interval_s) {
+  const auto samples = static_cast<Eigen::Index>(kFirstPart / (hz * interval_s));
+  const Eigen::Index third = std::min(std::max<Eigen::Index>(samples / 3, 1), x.size() / 3);
+  if (third == 0) return 0.0;
+  const double length_s = static_cast<double>(third) * interval_s;
+  return (x.segment(0, third).mean() - 2.0 * x.segment(third, third).mean() +
+          x.segment(2 * third, third).mean()) /
+         (length_s * length_s);
+}
+
+/// As if the mass had followed its foot so far: at its speed, held back by its acceleration.
+void start_along(const Eigen::VectorXd& x, double v, const Mode& mode, double interval_s,
+                 core::Resonance& resonance) {
+  const double w = 2.0 * std::numbers::pi * mode.hz;
+  const double back = first_accel(x, mode.hz, interval_s) / (w * w);
+  resonance.start(x[0] - back - 2.0 * mode.damping * v / w, v / w);
+}
+
+constexpr double kSlowHz = 5.0;
+
+/// One column, row by row.
+std::vector<double> read_column(const std::string& path, const std::string& column,
+                                bool skip_bad_lines) {
+  drivers::CsvConfig config;
+  config.path = path;
+  config.optional = {column};
+  config.skip_bad_lines = skip_bad_lines;
+  const auto reader = drivers::CsvReader::open(config);
+  if (!reader) throw RunError{reader.error_text()};
+  std::vector<double> out;
+  if (!reader.value()->has(column)) return out;
+  std::array<double, 1> row{};
+  for (auto rows = reader.value()->read(row); rows; rows = reader.value()->read(row))
+    if (rows.value() > 0) out.push_back(row[0]);
+  return out;
+}
+
+/// Where no deflection is the rest position, their mean is: a spring, a stop or a curve about a
+/// zero that lies outside the motion says nothing.
+void centre(Series& series) {
+  if (series.size() == 0) return;
+  const double low = series.deflection_m.minCoeff();
+  const double high = series.deflection_m.maxCoeff();
+  if (low <= 0.0 && high >= 0.0) return;
+  const double mean = series.deflection_m.mean();
+  series.deflection_m.array() -= mean;
+  series.notes.push_back(
+      fmt::format("Zero deflection lies outside the motion, {:.6g} to {:.6g} m: counted from the "
+                  "mean, {:.6g} m.",
+                  low, high, mean));
+}
+
+struct ReadRows {
+  std::vector<core::Sample> samples;
+  std::vector<double> time_s;
+  std::vector<double> accel_mps2;
+  bool has_accel{false};
+};
+
+ReadRows read_rows(const Record& record, Clock& clock, core::Survey& survey) {
+  ReadRows out;
+  const auto source = record.open();
+  Line line;
+  while (source->next(line)) {
+    out.samples.push_back(clock.sample(line));
+    out.time_s.push_back(line.time_s);
+    out.accel_mps2.push_back(line.accel_mps2);
+    out.has_accel = out.has_accel || std::isfinite(line.accel_mps2);
+    survey.update(out.samples.back());
+  }
+  clock.check_uniform();
+  return out;
+}
+
+}  // namespace
+
+Eigen::VectorXd through_mode(const Eigen::VectorXd& u, const Mode& mode, double interval_s) {
+  if (!(mode.hz > 0.0)) return u;
+  core::Resonance resonance{mode, interval_s};
+  Eigen::VectorXd out{u.size()};
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    if (i == 0)
+      resonance.start(u[0]);
+    else
+      resonance.advance(u[i - 1], u[i]);
+    out[i] = resonance.value();
+  }
+  return out;
+}
+
+Eigen::VectorXd attached_accel(const Eigen::VectorXd& x, const Eigen::VectorXd& v, const Mode& mode,
+                               double interval_s) {
+  const double w = 2.0 * std::numbers::pi * mode.hz;
+  const double d = 2.0 * mode.damping;
+  core::Resonance resonance{mode, interval_s};
+  Eigen::VectorXd out{x.size()};
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (i == 0)
+      start_along(x, v[0], mode, interval_s, resonance);
+    else
+      resonance.advance(x[i - 1], x[i]);
+    // y = p + D' p' / w, and p'' / w^2 = x - p - D' p' / w.
+    const double p = resonance.value();
+    const double rate = resonance.rate_over_w();
+    const double left = x[i] - p - d * rate;
+    out[i] = w * w * (left + d * (v[i] / w - rate - d * left));
+  }
+  return out;
+}
+
+void Series::set_motion(const std::vector<core::Motion>& rows) {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  for (Eigen::VectorXd* values : {&deflection_m, &velocity_mps, &force_n}) values->resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const core::Motion& row = rows[static_cast<std::size_t>(i)];
+    deflection_m[i] = row.deflection_m;
+    velocity_mps[i] = row.velocity_mps;
+    force_n[i] = row.force_n;
+  }
+}
+
+Series read_series(const std::string& path, const Config& config, bool skip_bad_lines,
+                   const std::string& reference_column) {
+  const Record record = csv_record(path, config.input, skip_bad_lines);
+  Series out;
+  out.record = path;
+  out.notes = record.notes;
+  Clock clock{record.name, measure_interval_s(record)};
+  const bool measured = record.open()->has_velocity();
+  core::Survey survey{1.0 / clock.interval_s(), measured};
+  const ReadRows rows = read_rows(record, clock, survey);
+  const auto settings =
+      survey.suggest(terms_of(config.model), config.model.rig_corner_hz.value_or(0.0));
+  if (!settings)
+    throw RunError{fmt::format("{}: found no motion, expected a record of a rig that moves", path)};
+  out.config = settings.value();
+  out.noise_m = survey.deflection_noise_m();
+  out.interval_s = clock.mean_interval_s();
+  out.config.sample_rate_hz = 1.0 / out.interval_s;
+  const std::vector<double> reference = reference_column.empty()
+                                            ? std::vector<double>{}
+                                            : read_column(path, reference_column, skip_bad_lines);
+
+  core::MotionEstimator estimator{out.config};
+  const auto late = static_cast<std::size_t>(estimator.latency_samples());
+  std::vector<core::Motion> motions;
+  std::vector<double> time_s;
+  std::vector<double> reference_n;
+  std::vector<double> accel_mps2;
+  for (std::size_t i = 0; i < rows.samples.size(); ++i) {
+    const core::Sample& sample = rows.samples[i];
+    const bool gap = i > 0 && sample.tick != rows.samples[i - 1].tick + 1;
+    const bool usable = core::is_finite(sample, measured);
+    if (gap || !usable) estimator.reset();
+    out.has_gap = out.has_gap || gap || !usable;
+    core::Motion motion;
+    if (!usable || !estimator.update(sample, motion)) continue;
+    motions.push_back(motion);
+    time_s.push_back(rows.time_s[i - late]);
+    if (reference.size() == rows.samples.size()) reference_n.push_back(reference[i - late]);
+    if (rows.has_accel) accel_mps2.push_back(rows.accel_mps2[i - late]);
+  }
+  out.set_motion(motions);
+  out.time_s = vector_of(time_s);
+  out.reference_n = vector_of(reference_n);
+  out.accel_mps2 = vector_of(accel_mps2);
+  if (1.0 / out.interval_s < kSlowHz)
+    out.notes.push_back(fmt::format(
+        "One sample every {:.4g} s: is time_s in s? If it is in ms: [input.scale] time_s = 0.001",
+        out.interval_s));
+  centre(out);
+  return out;
+}
+
+}  // namespace dampline::app::rig

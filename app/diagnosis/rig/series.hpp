@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/rig/record.hpp"
+#include "dampline/rig/config.hpp"
+#include "dampline/rig/resonance.hpp"
+
+namespace dampline::app::rig {
+
+using Mode = core::Mode;
+
+/// What a mass on a spring makes of a force that acts on it, seen in the spring:
+///   y'' + 2 D w y' + w^2 y = w^2 u, at rest at the first sample; u straight between samples.
+/// Without a mode it is u.
+[[nodiscard]] Eigen::VectorXd through_mode(const Eigen::VectorXd& u, const Mode& mode,
+                                           double interval_s);
+
+/// Acceleration, m/s^2, of a mass on a spring and a damper whose foot moves by x, m, at x', m/s:
+///   w^2 (x - y) + 2 D w (x' - y').
+[[nodiscard]] Eigen::VectorXd attached_accel(const Eigen::VectorXd& x, const Eigen::VectorXd& v,
+                                             const Mode& mode, double interval_s);
+
+/// A rig's record in memory: motion and force at a uniform rate. Samples that are no number are
+/// left out; over a gap the motion goes on.
+struct Series {
+  std::string record;
+  std::vector<std::string> notes;  ///< what was done to the record, a sentence each
+  double interval_s{0.0};
+  bool has_gap{false};
+  core::Config config;  ///< test function and derivative, as the record's noise permits
+  Eigen::VectorXd time_s;
+  Eigen::VectorXd deflection_m;
+  Eigen::VectorXd velocity_mps;
+  Eigen::VectorXd force_n;
+  Eigen::VectorXd reference_n;  ///< another prediction of the force, NaN where there is none; empty
+  Eigen::VectorXd accel_mps2;   ///< measured beside the deflection; empty: it is not
+  Eigen::VectorXd left_out;     ///< 1: takes no part in a fit or its error; empty: none
+  double noise_m{0.0};          ///< of the deflection, rms
+  Mode path;                    ///< that a force passes before it is measured
+  double start_m{0.0};          ///< slip of all friction elements at the first sample
+
+  [[nodiscard]] Eigen::Index size() const { return force_n.size(); }
+  void set_motion(const std::vector<core::Motion>& rows);
+};
+
+[[nodiscard]] inline Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Samples on either side of a reversal where the sign of the velocity is uncertain, and with it
+/// the friction.
+[[nodiscard]] inline Eigen::Index reach_of_reversal(const Series& series) {
+  return 3 + series.config.velocity_half_width;
+}
+
+/// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
+/// naming the file, what was found and what was expected.
+[[nodiscard]] Series read_series(const std::string& path, const Config& config, bool skip_bad_lines,
+                                 const std::string& reference_column = {});
+
+}  // namespace dampline::app::rig

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/rig/surrogate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/diagnosis/rig/trials.hpp"
+#include "dampline/rig/motion.hpp"
+#include "dampline/rig/survey.hpp"
+#include "sim_hw/noise.hpp"
+
+namespace dampline::app::rig {
+namespace {
+
+constexpr double kWhole = 0.02;            // a difference is a whole number of steps within this
+constexpr double kMostlyWhole = 0.98;      // of the differences
+constexpr double kFewestStepShare = 1e-6;  // of the range: a finer step is how numbers are printed
+constexpr std::uint64_t kSeed = 1987;
+
+double rounded(double value, double step) {
+  return step > 0.0 ? step * std::round(value / step) : value;
+}
+
+double white_part(double noise, double step) {
+  return std::sqrt(std::max(noise * noise - step * step / 12.0, 0.0));
+}
+
+bool is_sign(const Regressor& column, const Law& law) {
+  return std::any_of(law.friction.begin(), law.friction.end(), [&](const Regressor& c) {
+    return c.kind == column.kind && c.a == column.a && column.time == c.time;
+  });
+}
+
+/// The measured deflection without what is faster than the derivative sees.
+Eigen::VectorXd smoothed(const Series& record) {
+  const Eigen::Index half = std::max(2, record.config.velocity_half_width);
+  const Eigen::VectorXd& x = record.deflection_m;
+  Eigen::VectorXd out{x.size()};
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::Index reach = std::min({half, i, x.size() - 1 - i});
+    double sum = 0.0;
+    double weights = 0.0;
+    for (Eigen::Index j = -reach; j <= reach; ++j) {
+      const double u = static_cast<double>(j) / static_cast<double>(reach + 1);
+      const double weight = (1.0 - u * u) * (1.0 - u * u);
+      sum += weight * x[i + j];
+      weights += weight;
+    }
+    out[i] = sum / weights;
+  }
+  return out;
+}
+
+/// Sixth-order differences; the three values at either end are 0.
+Eigen::VectorXd derivative(const Eigen::VectorXd& x, double interval_s) {
+  const core::DerivativeWindow window = core::DerivativeWindow::sharp(interval_s);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  for (Eigen::Index i = 3; i + 3 < x.size(); ++i)
+    for (int j = 1; j <= 3; ++j) out[i] += window.weight(j) * (x[i + j] - x[i - j]);
+  return out;
+}
+
+/// The motion that the surrogate makes, known exactly.
+Series true_motion(const Series& record) {
+  Series out = record;
+  out.deflection_m = smoothed(record);
+  if (record.config.velocity_measured) return out;
+  out.velocity_mps = derivative(out.deflection_m, record.interval_s);
+  return out;
+}
+
+Eigen::VectorXd force_of(const Law& law, const Series& motion) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(motion.size());
+  for (std::size_t c = 0; c < law.columns.size(); ++c) {
+    const Regressor& column = law.columns[c];
+    const double theta = law.theta[static_cast<Eigen::Index>(c)];
+    if (!is_sign(column, law) && column.kind != Kind::kInertia) {
+      out += theta * evaluate(column, motion);
+      continue;
+    }
+    const Eigen::VectorXd values = column.kind == Kind::kInertia
+                                       ? derivative(motion.velocity_mps, motion.interval_s)
+                                       : Eigen::VectorXd{motion.velocity_mps.array().sign()};
+    out += theta * through_mode(values, motion.path, motion.interval_s);
+  }
+  return out;
+}
+
+/// What the estimator would leave, which takes the best of all ways to write sign v.
+double left_of(const std::vector<Series>& surrogates, const Law& law) {
+  TrialBase base;
+  base.ridge = law.ridge;
+  for (const Regressor& c : law.columns) {
+    if (is_sign(c, law))
+      base.friction = law.friction;
+    else
+      base.columns.push_back(c);
+  }
+  return best_fit(surrogates, base).held_out_nmse;
+}
+
+/// As they are seen: the white part of the force's noise.
+double force_noise(const Series& record, const Eigen::VectorXd& force) {
+  return std::min(white_noise(record.force_n), white_noise(record.force_n - force));
+}
+
+/// The record once more: the force that a law makes of a known motion, measured.
+Series surrogate_of(const Series& record, const Series& truth, const Eigen::VectorXd& force,
+                    double force_noise_n, std::uint64_t seed) {
+  sim::Random noise{seed, sim::Stream::kSensors};
+  const double step_m = resolution_of(record.deflection_m);
+  const double step_n = resolution_of(record.force_n);
+  const double noise_m = white_part(record.noise_m, step_m);
+  const double noise_n = white_part(force_noise_n, step_n);
+  const double noise_mps = record.config.velocity_measured ? white_noise(record.velocity_mps) : 0.0;
+  const double shift_m = step_m * (noise.uniform() - 0.5);  // other roundings than the record's
+  core::MotionEstimator estimator{record.config};
+  std::vector<core::Motion> motions;
+  std::vector<double> time_s;
+  std::int64_t tick = 0;
+  const Eigen::Index late = estimator.latency_samples();
+  for (Eigen::Index i = 0; i < record.size(); ++i) {
+    ++tick;
+    if (i > 0 && record.time_s[i] - record.time_s[i - 1] > 1.5 * record.interval_s)
+      estimator.reset();
+    core::Motion motion;
+    const core::Sample sample{
+        tick, rounded(truth.deflection_m[i] + shift_m + noise_m * noise.normal(), step_m),
+        truth.velocity_mps[i] + noise_mps * noise.normal(),
+        rounded(force[i] + noise_n * noise.normal(), step_n)};
+    if (!estimator.update(sample, motion)) continue;
+    motions.push_back(motion);
+    time_s.push_back(record.time_s[i - late]);
+  }
+  Series surrogate = record;
+  surrogate.left_out.resize(0);
+  surrogate.time_s = vector_of(time_s);
+  surrogate.set_motion(motions);
+  return surrogate;
+}
+
+}  // namespace
+
+double resolution_of(const Eigen::VectorXd& values) {
+  const double least = kFewestStepShare * (values.maxCoeff() - values.minCoeff());
+  std::vector<double> differences;
+  for (Eigen::Index i = 1; i < values.size(); ++i) {
+    const double d = std::abs(values[i] - values[i - 1]);
+    if (d > least) differences.push_back(d);
+  }
+  if (differences.size() < 10) return 0.0;
+  double step = *std::min_element(differences.begin(), differences.end());
+  const auto whole = std::count_if(differences.begin(), differences.end(), [step](double d) {
+    const double steps = d / step;
+    return std::abs(steps - std::round(steps)) < kWhole * std::max(1.0, 0.1 * steps);
+  });
+  const auto count = static_cast<double>(differences.size());
+  const bool varied = *std::max_element(differences.begin(), differences.end()) > 1.5 * step;
+  return varied && static_cast<double>(whole) > kMostlyWhole * count ? step : 0.0;
+}
+
+double white_noise(const Eigen::VectorXd& values) {
+  std::vector<double> fourth;
+  std::vector<double> eighth;
+  for (Eigen::Index i = 8; i < values.size(); ++i) {
+    const auto about = [&](int j) { return values[i - 4 + j]; };
+    fourth.push_back(std::abs(core::fourth_difference(about)));
+    eighth.push_back(std::abs(core::eighth_difference(about)));
+  }
+  if (fourth.empty()) return 0.0;
+  return std::max(core::white_sigma(median_of(fourth), median_of(eighth)),
+                  resolution_of(values) / std::sqrt(12.0));
+}
+
+Floor surrogate_floor(const std::vector<Series>& records, const Law& law) {
+  Floor out;
+  std::vector<Series> surrogates;
+  std::uint64_t seed = kSeed;
+  double noise_nmse = 0.0;
+  for (const Series& record : records) {
+    const Series truth = true_motion(record);
+    const Eigen::VectorXd force = force_of(law, truth);
+    const double noise_n = force_noise(record, force);
+    surrogates.push_back(surrogate_of(record, truth, force, noise_n, seed++));
+    if (surrogates.back().size() < record.size() / 2) return out;
+    const double variance = (record.force_n.array() - record.force_n.mean()).square().mean();
+    noise_nmse += noise_n * noise_n / (variance * static_cast<double>(records.size()));
+  }
+  out.nmse = left_of(surrogates, law);
+  if (out.nmse > 0.0) out.noise_share = std::min(noise_nmse / out.nmse, 1.0);
+  return out;
+}
+
+}  // namespace dampline::app::rig

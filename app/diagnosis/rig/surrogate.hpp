@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "app/diagnosis/rig/explanation.hpp"
+
+namespace dampline::app::rig {
+
+/// Standard deviation of white noise, from fourth differences: jumps and curves of what is measured
+/// do not count. At least what the resolution makes.
+[[nodiscard]] double white_noise(const Eigen::VectorXd& values);
+/// The step that a digitized signal is rounded to; 0: none is seen.
+[[nodiscard]] double resolution_of(const Eigen::VectorXd& values);
+
+/// A law as the surrogate needs it.
+struct Law {
+  std::vector<Regressor> columns;
+  Eigen::VectorXd theta;
+  /// Columns that are sign v in one way or another: the law has the sign itself, the estimate any
+  /// of `friction`.
+  std::vector<Regressor> friction;
+  double ridge{0.0};
+};
+
+struct Floor {
+  double nmse{0.0};         ///< held out, mean of the records; 0: not known
+  double noise_share{0.0};  ///< of it, what the noise of the force makes
+};
+/// What the same estimator leaves of the surrogates of all records, which no effect can take away.
+/// A surrogate is the record that the law alone would have made: on the measured motion, smoothed,
+/// measured again with the record's own noise and resolution.
+[[nodiscard]] Floor surrogate_floor(const std::vector<Series>& records, const Law& law);
+
+}  // namespace dampline::app::rig

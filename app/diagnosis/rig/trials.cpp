@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/rig/trials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "app/diagnosis/rig/library.hpp"
+#include "app/diagnosis/rig/regression.hpp"
+
+namespace dampline::app::rig {
+namespace {
+
+constexpr std::array kSkewSamples{0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0};
+constexpr int kSkewRefinements = 4;
+constexpr double kWorthALook = 0.95;
+constexpr std::size_t kLooks = 3;
+constexpr double kLeastSkew = 0.12;  // samples
+constexpr std::size_t kStepPlaces = 10;
+
+std::vector<Regressor> all_columns(const TrialBase& base, std::vector<Regressor> more) {
+  std::vector<Regressor> out = base.columns;
+  out.insert(out.end(), base.friction.begin(), base.friction.end());
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+Fit skewed_fit(const std::vector<Series>& records, const TrialBase& base, double skew_s) {
+  std::vector<Series> moved;
+  moved.reserve(records.size());
+  for (const Series& r : records) moved.push_back(delayed(r, skew_s));
+  return best_fit(moved, base);
+}
+
+double between(const Eigen::VectorXd& y, double place) {
+  const auto last = static_cast<double>(y.size() - 1);
+  const double at = std::clamp(place, 0.0, last);
+  const auto i = std::min(static_cast<Eigen::Index>(at), y.size() - 2);
+  const double u = at - static_cast<double>(i);
+  const double before = y[std::max<Eigen::Index>(i - 1, 0)];
+  const double after = y[std::min(i + 2, y.size() - 1)];
+  const double a = y[i];
+  const double b = y[i + 1];
+  const double slope_a = 0.5 * (b - before);
+  const double slope_b = 0.5 * (after - a);
+  const double square = u * u;
+  const double cube = square * u;
+  return (2.0 * cube - 3.0 * square + 1.0) * a + (cube - 2.0 * square + u) * slope_a +
+         (3.0 * square - 2.0 * cube) * b + (cube - square) * slope_b;
+}
+
+const char* drift_name(const Regressor& column) {
+  switch (column.kind) {
+    case Kind::kVelocity:
+      return "viscous";
+    case Kind::kDeflection:
+      return "stiffness";
+    case Kind::kOne:
+      return "offset";
+    default:
+      return nullptr;
+  }
+}
+
+struct Drifting {
+  Regressor column;
+  const char* name;
+};
+
+std::vector<Drifting> what_may_drift(const std::vector<Series>& records, const TrialBase& base) {
+  std::vector<Drifting> out;
+  for (const Regressor& c : base.columns)
+    if (drift_name(c) != nullptr) out.push_back({c, drift_name(c)});
+  if (const auto friction = TrialFits{records, base}.friction())
+    out.push_back({*friction, "coulomb"});
+  return out;
+}
+
+constexpr double kLongestStep = 0.05;  // of the travel
+constexpr int kMostParts = 20;
+constexpr double kShortest = 0.01;  // of the deflection
+constexpr double kLongest = 4.0;
+constexpr double kRatio = 1.5;
+constexpr std::array kShapes{-1.5, -1.0, -0.5, 0.0, 0.5, 1.0};
+constexpr double kShapeStep = 0.5;
+constexpr int kRounds = 6;
+
+struct Best {
+  Regressor column;
+  Fit fit;
+};
+
+/// Lagrange's polynomial through the six samples about i - 1 + part / parts; a straight line at the
+/// ends.
+double between(const Eigen::VectorXd& x, Eigen::Index i, int part, int parts) {
+  const double u = static_cast<double>(part) / parts;
+  if (i < 3 || i + 2 >= x.size()) return x[i - 1] + u * (x[i] - x[i - 1]);
+  double sum = 0.0;
+  for (int k = -2; k <= 3; ++k) {
+    double weight = 1.0;
+    for (int j = -2; j <= 3; ++j)
+      if (j != k) weight *= (u - j) / (k - j);
+    sum += weight * x[i - 1 + k];
+  }
+  return sum;
+}
+
+/// What moves at the start has slipped; what rests, and what never slips, starts from 0.
+double start_of(const Eigen::VectorXd& x, double travel_m, double shape) {
+  constexpr double kMoves = 0.3;  // of the rms of the speed
+  const Eigen::Index last = x.size() - 1;
+  if (last < 1) return 0.0;
+  const double rms_m =
+      std::sqrt((x.tail(last) - x.head(last)).squaredNorm() / static_cast<double>(last));
+  const double first_m = x[1] - x[0];
+  return std::abs(first_m) < kMoves * rms_m
+             ? 0.0
+             : std::copysign(bouc_wen_slip_m(travel_m, shape), first_m);
+}
+
+/// Every column in turn beside the base; a spring that pushes is no hysteresis.
+void look(const std::vector<Series>& records, const TrialBase& base,
+          const std::vector<Regressor>& columns, Best& best) {
+  const TrialFits fits{records, base, columns};
+  auto [place, fit] = fits.best_positive(columns.size());
+  if (fit.beats(best.fit)) best = {columns[place], std::move(fit)};
+}
+
+/// A look at the neighbours; whether one of them was clearly better.
+bool move(const std::vector<Series>& records, const TrialBase& base, double ratio, double step,
+          Best& best) {
+  constexpr double kWorthwhile = 0.995;
+  const Regressor from = best.column;
+  const double before = best.fit.held_out_nmse;
+  std::vector<Regressor> columns;
+  for (const double times : {1.0 / ratio, 1.0, ratio})
+    for (const double more : {-step, 0.0, step})
+      columns.push_back({from.kind, times * from.a, from.b + more});
+  look(records, base, columns, best);
+  return best.fit.held_out_nmse < kWorthwhile * before;
+}
+
+/// Deviations from the fits a step to either side of what was found.
+BoucWen with_deviations(const std::vector<Series>& records, const TrialBase& base,
+                        const Best& best) {
+  constexpr double kStep = 0.05;
+  const Regressor& at = best.column;
+  const double travel_step_m = kStep * at.a;
+  const TrialFits fits{records,
+                       base,
+                       {at,
+                        {at.kind, at.a - travel_step_m, at.b},
+                        {at.kind, at.a + travel_step_m, at.b},
+                        {at.kind, at.a, at.b - kStep},
+                        {at.kind, at.a, at.b + kStep}}};
+  const Fit middle = fits.best({0});
+  return {at, middle, deviation_of(fits.best({1}), middle, fits.best({2}), travel_step_m),
+          deviation_of(fits.best({3}), middle, fits.best({4}), kStep)};
+}
+
+}  // namespace
+
+TrialFits::TrialFits(const std::vector<Series>& records, const TrialBase& base,
+                     std::vector<Regressor> more)
+    : base_{base}, evidence_{all_columns(base, std::move(more)), records} {}
+
+Fit TrialFits::fit(const ColumnSet& more, std::size_t friction) const {
+  const std::size_t first = base_.columns.size();
+  ColumnSet set(first);
+  std::iota(set.begin(), set.end(), 0);
+  for (const Eigen::Index i : more)
+    set.push_back(static_cast<Eigen::Index>(first + base_.friction.size()) + i);
+  if (!base_.friction.empty()) set.push_back(static_cast<Eigen::Index>(first + friction));
+  return evidence_.fit(set, base_.ridge);
+}
+
+Fit TrialFits::best(const ColumnSet& more) const {
+  Fit out;
+  for (std::size_t w = 0; w < std::max<std::size_t>(base_.friction.size(), 1); ++w) {
+    Fit now = fit(more, w);
+    if (now.beats(out)) out = std::move(now);
+  }
+  return out;
+}
+
+TrialFits::Best TrialFits::best_positive(std::size_t count) const {
+  const auto place = static_cast<Eigen::Index>(base_.columns.size());
+  Best out;
+  for (std::size_t c = 0; c < count; ++c) {
+    Fit now = best({static_cast<Eigen::Index>(c)});
+    if (now.beats(out.fit) && now.theta[place] > 0.0) out = {c, std::move(now)};
+  }
+  return out;
+}
+
+std::optional<Regressor> TrialFits::friction() const {
+  std::optional<Regressor> out;
+  Fit best;
+  for (std::size_t w = 0; w < base_.friction.size(); ++w) {
+    Fit now = fit({}, w);
+    if (!now.beats(best)) continue;
+    best = std::move(now);
+    out = base_.friction[w];
+  }
+  return out;
+}
+
+Fit best_fit(const std::vector<Series>& records, const TrialBase& base) {
+  return TrialFits{records, base}.best();
+}
+
+Series delayed(const Series& record, double skew_s) {
+  Series out = record;
+  const double samples = skew_s / record.interval_s;
+  for (Eigen::Index i = 0; i < record.size(); ++i) {
+    out.deflection_m[i] = between(record.deflection_m, static_cast<double>(i) - samples);
+    out.velocity_mps[i] = between(record.velocity_mps, static_cast<double>(i) - samples);
+  }
+  return out;
+}
+
+std::optional<Trial> try_skew(const std::vector<Series>& records, const TrialBase& base) {
+  const double interval_s = records.front().interval_s;
+  const Fit without = best_fit(records, base);
+  if (!without.ok) return std::nullopt;
+  Trial best;
+  best.effect = "time_skew";
+  best.fit = without;
+  const auto look = [&](double skew_s) {
+    Fit fit = skewed_fit(records, base, skew_s);
+    const double nmse = fit.ok ? fit.held_out_nmse : without.held_out_nmse;
+    if (nmse >= best.fit.held_out_nmse) return nmse;
+    best.fit = std::move(fit);
+    best.skew_s = skew_s;
+    return nmse;
+  };
+  std::vector<std::pair<double, double>> order;  // error, skew
+  for (const double samples : kSkewSamples)
+    for (const double skew_s : {samples * interval_s, -samples * interval_s})
+      order.emplace_back(look(skew_s), skew_s);
+  std::sort(order.begin(), order.end());
+  // A sharp friction makes a narrow hollow, which the grid may pass by.
+  if (best.fit.held_out_nmse < kWorthALook * without.held_out_nmse)
+    for (std::size_t i = 0; i < kLooks; ++i)
+      for (const double part : {-0.25, -0.125, 0.125, 0.25}) {
+        const double step_s = part * std::max(std::abs(order[i].second), interval_s);
+        look(order[i].second + step_s);
+      }
+  double step_s = 0.0625 * std::max(std::abs(best.skew_s), interval_s);
+  for (int i = 0; i < kSkewRefinements; ++i, step_s *= 0.5) {
+    const double middle_s = best.skew_s;
+    look(middle_s - step_s);
+    look(middle_s + step_s);
+  }
+  if (std::abs(best.skew_s) < kLeastSkew * interval_s) return std::nullopt;
+  best.judge(without, best.fit);
+  return best;
+}
+
+double skew_deviation(const std::vector<Series>& records, const TrialBase& base, double skew_s) {
+  const double step_s = 0.2 * records.front().interval_s;
+  const Fit low = skewed_fit(records, base, skew_s - step_s);
+  const Fit middle = skewed_fit(records, base, skew_s);
+  const Fit high = skewed_fit(records, base, skew_s + step_s);
+  return deviation_of(low, middle, high, step_s);
+}
+
+double deviation_of(const Fit& low, const Fit& middle, const Fit& high, double step) {
+  if (!low.ok || !middle.ok || !high.ok) return step;
+  const double curve = high.held_out_nmse - 2.0 * middle.held_out_nmse + low.held_out_nmse;
+  if (!(curve > 0.0)) return step;
+  const auto n = static_cast<double>(middle.block_error.size());
+  double squares = 0.0;
+  const double mean = 0.5 * (high.held_out_nmse - low.held_out_nmse);
+  for (std::size_t b = 0; b < middle.block_error.size(); ++b) {
+    const double slope = 0.5 * (high.block_error[b] - low.block_error[b]) - mean;
+    squares += slope * slope;
+  }
+  return step * std::sqrt(squares / (n * (n - 1.0))) / curve;
+}
+
+std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBase& base) {
+  const std::vector<Drifting> drifting = what_may_drift(records, base);
+  std::vector<Regressor> columns;
+  for (const Drifting& d : drifting) {
+    for (std::size_t place = 0; place < kStepPlaces; ++place) {
+      columns.push_back(d.column);
+      columns.back().time = place == 0 ? Regressor::Time::kSlope : Regressor::Time::kStep;
+      columns.back().at = static_cast<double>(place) / kStepPlaces;
+    }
+  }
+  const TrialFits fits{records, base, columns};
+  const Fit without = fits.best();
+  if (!without.ok) return std::nullopt;
+  Trial best;
+  best.effect = "time_drift";
+  best.fit = without;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    Fit fit = fits.best({static_cast<Eigen::Index>(c)});
+    if (!fit.beats(best.fit)) continue;
+    best.fit = std::move(fit);
+    best.columns = {columns[c]};
+    best.parameter = drifting[c / kStepPlaces].name;
+    best.at_share = columns[c].time == Regressor::Time::kSlope ? -1.0 : columns[c].at;
+  }
+  if (best.columns.empty()) return std::nullopt;
+  best.judge(without, best.fit);
+  return best;
+}
+
+double bouc_wen_slip_m(double travel_m, double shape) {
+  constexpr double kSlips = 0.1;  // a smaller one is not reached within ten travels
+  return 1.0 + shape < kSlips ? 0.0 : travel_m / (1.0 + shape);
+}
+
+Eigen::VectorXd bouc_wen(const Eigen::VectorXd& deflection_m, double travel_m, double shape) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(deflection_m.size());
+  double z = start_of(deflection_m, travel_m, shape);
+  if (out.size() > 0) out[0] = z;
+  const auto move = [&](double dx) {
+    const auto slope = [&](double at) {
+      return dx - (std::abs(dx) * at + shape * dx * std::abs(at)) / travel_m;
+    };
+    z += slope(z + 0.5 * slope(z));
+  };
+  for (Eigen::Index i = 1; i < deflection_m.size(); ++i) {
+    const double whole_m = deflection_m[i] - deflection_m[i - 1];
+    const int parts = std::clamp(
+        static_cast<int>(std::ceil(std::abs(whole_m) / (kLongestStep * travel_m))), 1, kMostParts);
+    double from_m = deflection_m[i - 1];
+    for (int p = 1; p <= parts; ++p) {
+      const double to_m = p < parts ? between(deflection_m, i, p, parts) : deflection_m[i];
+      move(to_m - from_m);
+      from_m = to_m;
+    }
+    out[i] = z;
+  }
+  return out;
+}
+
+std::optional<BoucWen> best_bouc_wen(const std::vector<Series>& records, const TrialBase& base,
+                                     double deflection_m) {
+  std::vector<Regressor> columns;
+  for (const double share : ratios(kShortest, kLongest, kRatio))
+    for (const double shape : kShapes)
+      columns.push_back({Kind::kBoucWen, share * deflection_m, shape});
+  Best best;
+  look(records, base, columns, best);
+  if (!best.fit.ok) return std::nullopt;
+  double ratio = std::sqrt(kRatio);
+  double step = 0.5 * kShapeStep;
+  for (int i = 0; i < kRounds; ++i) {
+    while (move(records, base, ratio, step, best)) {
+    }
+    ratio = std::sqrt(ratio);
+    step *= 0.5;
+  }
+  return with_deviations(records, base, best);
+}
+
+}  // namespace dampline::app::rig
