@@ -62,10 +62,10 @@ def aims(table, f):
     """What was to be reached, from figures of this same run."""
     def aim(what, reached, bound, shown=None, least=False, note=""):
         if reached is None or bound is None:
-            return table.add("aims", what, "not measured here")
+            return table.add(what, "not measured here")
         met = reached >= bound if least else reached <= bound
         shown = shown or (lambda x: f"{x:,.0f}")
-        table.add("aims", what, shown(reached), ("met: " if met else "MISSED: ")
+        table.add(what, shown(reached), ("met: " if met else "MISSED: ")
                   + ("at least " if least else "at most ") + shown(bound) + note)
 
     mean, worst, ns, rls, streaming = f["mean"], f["worst"], f["ns"], f["rls"], f["streaming"]

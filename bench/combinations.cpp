@@ -6,11 +6,162 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "bench/combination_case.hpp"
+#include "app/explain/fault_veto.hpp"
+#include "app/identify/fault_watch.hpp"
+#include "bench/guard_cases.hpp"
+#include "dampline/effect/explainer.hpp"
+
+namespace dampline::bench {
+
+/// What comes with a fault.
+enum class Combination : std::uint8_t { kAlone, kEffect, kFault, kDrift };
+inline constexpr std::array<Combination, 4> kCombinations{Combination::kAlone, Combination::kEffect,
+                                                          Combination::kFault, Combination::kDrift};
+inline const char* name_of(Combination kind) {
+  constexpr std::array<const char*, 4> kNames{"alone", "effect", "fault", "drift"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+struct CombinedRecord {
+  GuardRecord base;
+  std::vector<FaultKind> right;  ///< names of the first fault
+  std::vector<FaultKind> also;   ///< of the second, if there is one
+  std::string effect;            ///< that is planted, or "time_drift"
+  std::string text;
+  [[nodiscard]] bool has_second() const { return !also.empty() || !effect.empty(); }
+};
+
+inline std::vector<GuardCase> fault_cases() {
+  std::vector<GuardCase> all = lasting_cases();
+  const std::vector<GuardCase> timing = timing_cases();
+  all.insert(all.end(), timing.begin(), timing.end());
+  return all;
+}
+
+inline void add_effect(CombinedRecord& record, sim::Random& random) {
+  constexpr std::array<const char*, 9> kPlanted{
+      "viscous",   "quadratic_damping", "progressive_friction",  "stribeck",       "backlash",
+      "bump_stop", "cubic_stiffness",   "presliding_hysteresis", "unmodelled_mode"};
+  record.effect = kPlanted[static_cast<std::size_t>(9.0 * random.uniform())];
+  static_cast<void>(sim::add_effect(record.base.simulation, record.effect,
+                                    {{"strength", between(random, 0.5, 1.2)}}));
+  record.text += " + " + record.effect;
+}
+
+/// Another fault, of another name; what both set is set by the second.
+inline void add_fault(CombinedRecord& record, sim::Random& random) {
+  const std::vector<GuardCase> faults = fault_cases();
+  const GuardCase* second = nullptr;
+  while (second == nullptr || second->right.front() == record.right.front()) {
+    second =
+        &faults[static_cast<std::size_t>(static_cast<double>(faults.size()) * random.uniform())];
+  }
+  second->make(record.base, random);
+  record.also = second->right;
+  record.text += " + " + second->name;
+}
+
+inline void add_drift(CombinedRecord& record, sim::Random& random) {
+  sim::DriftEffects& drift = record.base.simulation.truck.drift;
+  drift.start_s = between(random, 60.0, 240.0);
+  const double factor = 1.0 + either_sign(random, 0.10, 0.30);
+  const std::size_t which = any_channel(random);
+  (which == 0   ? drift.friction_factor
+   : which == 1 ? drift.stiffness_factor
+                : drift.mass_factor) = factor;
+  record.effect = "time_drift";
+  record.text += fmt::format(" + parameter {} x {:.2f}", which, factor);
+}
+
+inline CombinedRecord combine(Combination kind, const GuardCase& fault,
+                              const GuardCondition& condition, std::uint64_t seed,
+                              sim::Random& random) {
+  CombinedRecord record{clean_record(condition, seed), fault.right, {}, "", fault.name};
+  if (kind == Combination::kEffect) add_effect(record, random);
+  if (kind == Combination::kDrift) add_drift(record, random);
+  fault.make(record.base, random);
+  if (kind == Combination::kFault) add_fault(record, random);
+  return record;
+}
+
+/// What `explain` says of a record.
+struct Decision {
+  std::vector<std::string> faults;
+  std::string effect;  ///< the first that is named; "time_drift" for a parameter that changed
+  bool withheld{false};
+  app::DataFaults data;
+};
+
+inline app::Config config_of(const GuardRecord& record) {
+  app::Config config;
+  config.car.moving_mass_kg = record.simulation.truck.moving_mass_kg;
+  if (record.guard.wheelbase_m > 0.0) config.car.wheelbase_m = record.guard.wheelbase_m;
+  if (record.guard.speed_mps > 0.0) config.input.speed_mps = record.guard.speed_mps;
+  config.input.leading = "wheelset1";
+  for (std::size_t c = 0; c < kChannels; ++c)
+    config.input.noise_mps2[c] = record.guard.noise_mps2[c];
+  return config;
+}
+
+inline Decision decide(const GuardRecord& record) {
+  const app::Config config = config_of(record);
+  EstimatorConfig core;
+  core.moving_mass_kg = config.car.moving_mass_kg;
+  core.screen.step_mps2 = record.guard.step_mps2;
+  const auto identifier = std::make_unique<Estimator>(core);
+  const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
+  app::FaultWatch watch{config, core};
+  const auto use = [&](const Sample& sample) {
+    diagnosis->update(sample, identifier->update(sample));
+  };
+  sim::FaultyRecord source{record.simulation, record.faults};
+  const auto samples = static_cast<std::int64_t>(record.length_s * sim::kSampleRateHz);
+  Sample due;
+  for (std::int64_t n = 0; n < samples; ++n) {
+    if (watch.take(sim::to_sample(source.next()), due)) use(due);
+  }
+  watch.close();
+  while (watch.drain(due)) use(due);
+  identifier->finish();
+  diagnosis->finish();
+  const auto statistics = std::make_unique<Statistics>();
+  identifier->export_statistics(*statistics);
+  app::TruckRecord truck;
+  truck.sample_rate_hz = core.sample_rate_hz;
+  truck.newest_tick = samples;
+  app::RunResult result;
+  watch.finish(truck, *statistics, result);
+  const auto explainer = std::make_unique<effect::Explainer>();
+  effect::ExplainerConfig wanted{.moving_mass_kg = core.moving_mass_kg};
+  app::disallow_mimics(result.faults, wanted);
+  const effect::Explanation explanation = explainer->explain(*diagnosis, wanted);
+  Decision out;
+  out.data = result.faults;
+  for (const app::FaultFinding& fault : result.faults.list) out.faults.push_back(fault.name);
+  out.withheld = app::forbids_naming(result.faults);
+  if (out.withheld) return out;
+  if (app::drift_explains_more(result.faults, explanation)) {
+    out.effect = "time_drift";
+  } else if (explanation.step_count > 0) {
+    out.effect = effect::name_of(explanation.step[0].chosen.effect);
+  }
+  return out;
+}
+
+inline bool has_any(const std::vector<std::string>& names, const std::vector<FaultKind>& kinds) {
+  return std::any_of(kinds.begin(), kinds.end(), [&](FaultKind kind) {
+    return std::find(names.begin(), names.end(), dampline::name_of(kind)) != names.end();
+  });
+}
+
+}  // namespace dampline::bench
 
 namespace {
 

@@ -16,8 +16,7 @@
 
 #include "bench/chain.hpp"
 #include "bench/fleet.hpp"
-#include "bench/peers/problem.hpp"
-#include "bench/peers/timing.hpp"
+#include "bench/peers/rows.hpp"
 #include "bench/ride.hpp"
 #include "published/wavelet/recursive_estimate.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "app/identify/can_channels.hpp"
 #include "app/live/lateness.hpp"
-#include "bench/large_array.hpp"
+#include "bench/fleet.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/os/system_clock.hpp"

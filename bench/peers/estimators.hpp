@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bench/peers/problem.hpp"
+#include "bench/peers/rows.hpp"
 #include "published/wavelet/recursive_estimate.hpp"
 
 #ifdef DAMPLINE_HAS_DLIB

@@ -16,7 +16,7 @@
 #include <string_view>
 
 #include "bench/peers/estimators.hpp"
-#include "bench/peers/timing.hpp"
+#include "bench/peers/rows.hpp"
 
 namespace dampline::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "bench/peers/estimators.hpp"
-#include "bench/peers/timing.hpp"
+#include "bench/peers/rows.hpp"
 #include "bench/ride.hpp"
 #include "dampline/density/histogram.hpp"
 #include "dampline/density/joint_histogram.hpp"

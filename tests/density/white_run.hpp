@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bench/curve_error.hpp"
+#include "bench/errors.hpp"
 #include "dampline/density/fokker_planck.hpp"
 #include "sim_hw/white_input.hpp"
 
