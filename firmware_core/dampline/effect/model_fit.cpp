@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/numeric/cholesky.hpp"
+
 namespace dampline::effect {
 namespace {
 
@@ -17,34 +19,17 @@ constexpr double kDependent = 1e-10;
 template <class Small, class Vector>
 bool solve(const Small& normal, int count, Vector& theta, Small* inverse = nullptr) noexcept {
   const int n = count - 1;
-  Small l = Small::Zero();
-  for (int j = 0; j < n; ++j) {
-    for (int i = j; i < n; ++i) {
-      double sum = normal(i, j);
-      for (int k = 0; k < j; ++k) sum -= l(i, k) * l(j, k);
-      if (i == j && !(sum > kDependent * normal(j, j))) return false;
-      l(i, j) = i == j ? std::sqrt(sum) : sum / l(j, j);
-    }
-  }
-  const auto substitute = [&](auto&& right) {
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < i; ++k) right[i] -= l(i, k) * right[k];
-      right[i] /= l(i, i);
-    }
-    for (int i = n - 1; i >= 0; --i) {
-      for (int k = i + 1; k < n; ++k) right[i] -= l(k, i) * right[k];
-      right[i] /= l(i, i);
-    }
-  };
+  Cholesky<Vector::RowsAtCompileTime> cholesky;
+  if (!cholesky.factor(normal, n, kDependent)) return false;
   theta.setZero();
   for (int i = 0; i < n; ++i) theta[i] = normal(i, n);
-  substitute(theta);
+  cholesky.solve(theta);
   if (inverse == nullptr) return true;
   inverse->setZero();
   for (int j = 0; j < n; ++j) {
     Vector unit = Vector::Zero();
     unit[j] = 1.0;
-    substitute(unit);
+    cholesky.solve(unit);
     for (int i = 0; i < n; ++i) (*inverse)(i, j) = unit[i];
   }
   return true;
@@ -223,29 +208,21 @@ void ModelFitter::judge(ModelFit& fit) noexcept {
   }
 }
 
-/// A^-1 S A^-1 with the scores of the entries and their products with the neighbour's (Newey and
-/// West 1987, one lag), as the base estimate's.
+/// From the scores of the entries, as the base estimate's.
 void ModelFitter::spread(ModelFit& fit) noexcept {
   Small inverse;
   ModelFit::Vector theta;
   if (!solve(total_, fit.terms + 1, theta, &inverse)) return;
-  ModelFit::Square meat = ModelFit::Square::Zero();
-  ModelFit::Vector last = ModelFit::Vector::Zero();
+  ScoreScatter<kMostTerms> scatter;
   for (std::size_t e = 0; e < evidence_->count; ++e) {
     ModelFit::Vector score = ModelFit::Vector::Zero();
     for (int i = 0; i < fit.terms; ++i) {
       score[i] = entry_[e](i, fit.terms);
       for (int j = 0; j < fit.terms; ++j) score[i] -= entry_[e](i, j) * fit.theta[j];
     }
-    for (int i = 0; i < fit.terms; ++i) {
-      for (int j = 0; j < fit.terms; ++j) {
-        meat(i, j) += score[i] * score[j] + 0.5 * (score[i] * last[j] + last[i] * score[j]);
-      }
-    }
-    last = score;
+    scatter.add(score, fit.terms);
   }
-  const ModelFit::Square a = inverse.template topLeftCorner<kMostTerms, kMostTerms>();
-  fit.covariance = a.lazyProduct(meat.lazyProduct(a).eval());
+  fit.covariance = scatter.covariance(inverse.template topLeftCorner<kMostTerms, kMostTerms>());
 }
 
 }  // namespace dampline::effect

@@ -149,19 +149,14 @@ WeightedFit<Q> weighted_fit(const ScaleFactors& factors, const ColumnMap<Q>& map
   return fit;
 }
 
-/// Covariance of a fit from the scores of the entries: A^-1 S A^-1 with
-/// S = sum s_b s_b' + 1/2 sum (s_b s_(b-1)' + s_(b-1) s_b'), valid for correlated and for
-/// heteroscedastic rows (Newey and West 1987, one lag).
+/// Covariance of a fit from the scores of the entries.
 template <int Q>
 Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, EntryList entries,
                                              const ColumnMap<Q>& map) noexcept {
-  using Vector = Eigen::Matrix<double, Q, 1>;
-  using Square = Eigen::Matrix<double, Q, Q>;
   const MappedColumns<Q> columns{map};
-  Square meat = Square::Zero();
-  Vector last = Vector::Zero();
+  ScoreScatter<Q> scatter;
   for (const ScaleFactors* entry : entries) {
-    Vector score = Vector::Zero();
+    Eigen::Matrix<double, Q, 1> score = Eigen::Matrix<double, Q, 1>::Zero();
     for (std::size_t s = 0; s < kScales; ++s) {
       if (!(fit.weight[s] > 0.0)) continue;
       for (int i = 0; i < kRowColumns; ++i) {
@@ -170,11 +165,9 @@ Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, EntryLis
                  row.template head<Q>();
       }
     }
-    const Square lag = score.lazyProduct(last.transpose());
-    meat += score.lazyProduct(score.transpose()) + 0.5 * (lag + lag.transpose());
-    last = score;
+    scatter.add(score);
   }
-  return fit.inverse.lazyProduct(meat.lazyProduct(fit.inverse).eval());
+  return scatter.covariance(fit.inverse);
 }
 
 /// Factor on a standard deviation that came from the scatter of `count` blocks: few blocks scatter
@@ -200,30 +193,53 @@ Eigen::Matrix<double, Q + 1, Q + 1> weighted_gram(const WeightedFit<Q>& fit,
   return gram;
 }
 
-/// NMSE of the entries, each predicted from the others: `Folds` of them, interleaved.
-template <int Q, std::size_t Folds>
-double held_out_nmse_of(const WeightedFit<Q>& fit, EntryList entries,
-                        const ColumnMap<Q>& map) noexcept {
+/// |X theta - t|^2 from the normal equations.
+template <int Q>
+double error_of(const Eigen::Matrix<double, Q + 1, Q + 1>& gram,
+                const Eigen::Matrix<double, Q, 1>& theta) noexcept {
+  Eigen::Matrix<double, Q + 1, 1> extended;
+  extended << -theta, 1.0;
+  return extended.dot(gram.lazyProduct(extended));
+}
+
+/// NaN where the normal equations do not determine theta.
+template <int Q>
+Eigen::Matrix<double, Q, 1> solve(const Eigen::Matrix<double, Q + 1, Q + 1>& gram) noexcept {
+  return solve_cholesky<Q>(gram.template topLeftCorner<Q, Q>(),
+                           gram.template topRightCorner<Q, 1>());
+}
+
+struct HeldOut {
+  double error{0.0};  ///< |X theta - t|^2, theta from the other folds
+  double total{0.0};  ///< |t|^2
+};
+
+/// `count` entries, each predicted from those of the other folds, which are interleaved. `of(i)`:
+/// normal equations of entry i.
+template <int Q, std::size_t Folds, class Of>
+HeldOut held_out(std::size_t count, const Of& of) noexcept {
   using Gram = Eigen::Matrix<double, Q + 1, Q + 1>;
-  const MappedColumns<Q> columns{map};
   Gram all = Gram::Zero();
   std::array<Gram, Folds> held_of;
   held_of.fill(all);
-  for (std::size_t b = 0; b < entries.size(); ++b) {
-    const Gram gram = weighted_gram<Q>(fit, *entries[b], columns);
+  for (std::size_t b = 0; b < count; ++b) {
+    const Gram gram = of(b);
     all += gram;
     held_of[b % Folds] += gram;
   }
-  double error = 0.0;
-  for (const Gram& held : held_of) {
-    const Gram rest = all - held;
-    const Eigen::Matrix<double, Q, 1> theta = solve_cholesky<Q>(
-        rest.template topLeftCorner<Q, Q>(), rest.template topRightCorner<Q, 1>());
-    Eigen::Matrix<double, Q + 1, 1> extended;
-    extended << -theta, 1.0;
-    error += extended.dot(held.lazyProduct(extended));
-  }
-  return error / all(Q, Q);
+  HeldOut out{.total = all(Q, Q)};
+  for (const Gram& held : held_of) out.error += error_of<Q>(held, solve<Q>(Gram{all - held}));
+  return out;
+}
+
+/// NMSE of the entries of a fit, held out.
+template <int Q, std::size_t Folds>
+double held_out_nmse_of(const WeightedFit<Q>& fit, EntryList entries,
+                        const ColumnMap<Q>& map) noexcept {
+  const MappedColumns<Q> columns{map};
+  const HeldOut out = held_out<Q, Folds>(
+      entries.size(), [&](std::size_t b) { return weighted_gram<Q>(fit, *entries[b], columns); });
+  return out.error / out.total;
 }
 
 }  // namespace dampline

@@ -61,36 +61,6 @@ bool level_of(const Gram& g, double width_change, GroupMeter::Group& out) noexce
   return true;
 }
 
-template <int Q>
-double error_of(const Eigen::Matrix<double, Q + 1, Q + 1>& gram,
-                const Eigen::Matrix<double, Q, 1>& theta) noexcept {
-  Eigen::Matrix<double, Q + 1, 1> extended;
-  extended << -theta, 1.0;
-  return extended.dot(gram.lazyProduct(extended));
-}
-
-template <int Q>
-Eigen::Matrix<double, Q, 1> solve(const Eigen::Matrix<double, Q + 1, Q + 1>& gram) noexcept {
-  return solve_cholesky<Q>(gram.template topLeftCorner<Q, Q>(),
-                           gram.template topRightCorner<Q, 1>());
-}
-
-/// Error of the entries, each predicted from those of the other folds. `of(i)`: gram of entry i.
-template <int Q, class Of>
-double held_out_error(std::size_t count, const Of& of) noexcept {
-  using Matrix = Eigen::Matrix<double, Q + 1, Q + 1>;
-  Matrix all = Matrix::Zero();
-  for (std::size_t b = 0; b < count; ++b) all += of(b);
-  double error = 0.0;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    Matrix held = Matrix::Zero();
-    for (std::size_t b = fold; b < count; b += kFolds) held += of(b);
-    const Matrix rest = all - held;
-    error += error_of<Q>(held, solve<Q>(rest));
-  }
-  return error;
-}
-
 /// The entry's gram with the column w X u.
 MoreGram extended(const Gram& gram, double weight, const Theta& u) noexcept {
   Eigen::Matrix<double, kUnknowns + 1, kMore + 1> map;
@@ -139,16 +109,14 @@ Estimate change_of(const Entries& entries, const Weights& weights, const Theta& 
   // Column of the inverse that belongs to the change.
   const MoreTheta inverse = solve_cholesky<kMore>(Square{all.topLeftCorner<kMore, kMore>()},
                                                   MoreTheta{MoreTheta::Unit(kUnknowns)});
-  double variance = 0.0;
-  double last = 0.0;
+  ScoreScatter<1> scatter;
   for (std::size_t b = 0; b < entries.count; ++b) {
     const MoreGram g = extended(entries.gram[b], weights[b], u);
     MoreTheta score = g.topRightCorner<kMore, 1>();
     score -= g.topLeftCorner<kMore, kMore>().lazyProduct(theta);
-    const double influence = inverse.dot(score);
-    variance += influence * influence + influence * last;
-    last = influence;
+    scatter.add(ScoreScatter<1>::Vector{inverse.dot(score)});
   }
+  const double variance = scatter.covariance(ScoreScatter<1>::Square::Identity())(0, 0);
   const double std =
       std::sqrt(std::max(variance, 0.0)) * short_record_factor(static_cast<double>(entries.count));
   const int which = parameter == DriftingParameter::kStiffness ? static_cast<int>(Model::kStiffness)
@@ -184,7 +152,7 @@ ParameterDrift find_parameter_drift(const ScaleFactors& total, EntryList list,
   Entries entries;
   for (const ScaleFactors* factors : list) entries.gram[entries.count++] = gram_of(*factors, law);
   const auto plain = [&](std::size_t b) { return entries.gram[b]; };
-  const double base = held_out_error<kUnknowns>(entries.count, plain);
+  const double base = held_out<kUnknowns, kFolds>(entries.count, plain).error;
   if (!(base > 0.0)) return out;
   out.judged = true;
   double least = base;
@@ -193,7 +161,7 @@ ParameterDrift find_parameter_drift(const ScaleFactors& total, EntryList list,
                             std::size_t entry) {
     const Theta u = scaled_part(parameter, law.fit.theta);
     const auto more = [&](std::size_t b) { return extended(entries.gram[b], weights[b], u); };
-    const double error = held_out_error<kMore>(entries.count, more);
+    const double error = held_out<kMore, kFolds>(entries.count, more).error;
     if (!(error < least)) return;
     least = error;
     best = weights;

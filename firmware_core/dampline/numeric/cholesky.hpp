@@ -15,8 +15,10 @@ class Cholesky {
   using Matrix = Eigen::Matrix<double, Max, Max>;
   using Vector = Eigen::Matrix<double, Max, 1>;
 
-  /// False when a pivot is not above `tolerance` times its diagonal element.
-  [[nodiscard]] bool factor(const Matrix& a, int size, double tolerance = 1e-12) noexcept {
+  /// False when a pivot is not above `tolerance` times its diagonal element. `a` may have more rows
+  /// and columns.
+  template <class Square>
+  [[nodiscard]] bool factor(const Square& a, int size, double tolerance = 1e-12) noexcept {
     size_ = size;
     for (int j = 0; j < size; ++j) {
       for (int i = j; i < size; ++i) {
@@ -34,21 +36,24 @@ class Cholesky {
   }
 
   /// b becomes L^-1 b.
-  void forward(Vector& b) const noexcept {
+  template <class Column>
+  void forward(Column& b) const noexcept {
     for (int i = 0; i < size_; ++i) {
       for (int k = 0; k < i; ++k) b[i] -= l_(i, k) * b[k];
       b[i] /= l_(i, i);
     }
   }
   /// b becomes L^-T b.
-  void backward(Vector& b) const noexcept {
+  template <class Column>
+  void backward(Column& b) const noexcept {
     for (int i = size_ - 1; i >= 0; --i) {
       for (int k = i + 1; k < size_; ++k) b[i] -= l_(k, i) * b[k];
       b[i] /= l_(i, i);
     }
   }
   /// b becomes A^-1 b.
-  void solve(Vector& b) const noexcept {
+  template <class Column>
+  void solve(Column& b) const noexcept {
     forward(b);
     backward(b);
   }
@@ -56,6 +61,33 @@ class Cholesky {
  private:
   Matrix l_ = Matrix::Zero();
   int size_{0};
+};
+
+/// The middle S of a covariance A^-1 S A^-1 from the scores of blocks in their order in time:
+///   S = sum s_b s_b' + 1/2 sum (s_b s_(b-1)' + s_(b-1) s_b'),
+/// valid for rows that are correlated and of unequal variance (Newey and West 1987, one lag).
+template <int N>
+class ScoreScatter {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Square = Eigen::Matrix<double, N, N>;
+
+  /// Of the first `size` unknowns.
+  void add(const Vector& score, int size = N) noexcept {
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j)
+        sum_(i, j) += score[i] * score[j] + 0.5 * (score[i] * last_[j] + last_[i] * score[j]);
+    }
+    last_ = score;
+  }
+  /// `inverse`: A^-1.
+  [[nodiscard]] Square covariance(const Square& inverse) const noexcept {
+    return inverse.lazyProduct(sum_.lazyProduct(inverse).eval());
+  }
+
+ private:
+  Square sum_ = Square::Zero();
+  Vector last_ = Vector::Zero();
 };
 
 /// Solves A x = b; all NaN where A is not positive definite.
