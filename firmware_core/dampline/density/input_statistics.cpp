@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "dampline/numeric/blocks.hpp"
 #include "dampline/numeric/cholesky.hpp"
 #include "dampline/numeric/wide.hpp"
 
@@ -153,14 +154,8 @@ void BlockPowers::push(const Power& slot) noexcept {
 }
 
 void BlockPowers::coarsen() noexcept {
-  const std::size_t pairs = size_ / 2;
-  for (std::size_t i = 0; i < pairs; ++i) {
-    Power pair = slots_[2 * i];
-    pair.add(slots_[2 * i + 1]);
-    slots_[i] = pair;
-  }
-  if (size_ % 2 == 1) open_.add(slots_[size_ - 1]);
-  size_ = pairs;
+  if (size_ % 2 == 1) open_.add(slots_[--size_]);
+  size_ = join_neighbours(slots_, size_, [](Power& slot, const Power& next) { slot.add(next); });
   blocks_per_slot_ *= 2;
 }
 

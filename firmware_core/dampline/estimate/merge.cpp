@@ -4,18 +4,15 @@
 #include <algorithm>
 
 #include "dampline/estimate/block_store.hpp"
+#include "dampline/numeric/blocks.hpp"
 
 namespace dampline {
 namespace {
 
 /// Joins neighbouring entries two by two: half as many, twice as long.
 void halve(Statistics& statistics) noexcept {
-  const std::size_t count = statistics.header.entry_count;
-  for (std::size_t i = 0; 2 * i < count; ++i) {
-    if (i > 0) statistics.entries[i] = statistics.entries[2 * i];
-    if (2 * i + 1 < count) merge_all(statistics.entries[i], statistics.entries[2 * i + 1]);
-  }
-  statistics.header.entry_count = static_cast<std::uint32_t>((count + 1) / 2);
+  statistics.header.entry_count = static_cast<std::uint32_t>(
+      join_neighbours(statistics.entries, statistics.header.entry_count, merge_all));
   statistics.header.blocks_per_entry *= 2;
 }
 

@@ -8,6 +8,7 @@
 
 #include "dampline/estimate/block_store.hpp"
 #include "dampline/estimate/weighted_fit.hpp"
+#include "dampline/numeric/blocks.hpp"
 #include "dampline/numeric/cholesky.hpp"
 #include "dampline/numeric/information.hpp"
 #include "dampline/result.hpp"
@@ -110,7 +111,7 @@ class BlockMemory {
         head_ = (head_ + 1) % Entries;
         --count_;
       } else {
-        compact();
+        compact();  // only a window turns, so that the oldest is entry 0
       }
     }
     ++count_;
@@ -118,15 +119,13 @@ class BlockMemory {
   }
 
   void compact() noexcept {
-    for (int i = 0; i < Entries / 2; ++i) {
-      Entry pair = entry(2 * i);
-      const Entry& second = entry(2 * i + 1);
-      pair.factor.merge(second.factor);
-      pair.rows += second.rows;
-      pair.blocks += second.blocks;
-      entries_[index(head_ + i)] = pair;
-    }
-    count_ = Entries / 2;
+    const std::size_t left =
+        join_neighbours(entries_, entries_.size(), [](Entry& into, const Entry& next) {
+          into.factor.merge(next.factor);
+          into.rows += next.rows;
+          into.blocks += next.blocks;
+        });
+    count_ = static_cast<int>(left);
     per_entry_ *= 2;
   }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/numeric/blocks.hpp"
 #include "dampline/numeric/information.hpp"
 
 namespace dampline {
@@ -93,14 +94,10 @@ class ModelBlocks {
   }
 
   void halve() noexcept {
-    for (std::size_t i = 0; 2 * i < kBlocks; ++i) {
-      if (i > 0) blocks_[i] = blocks_[2 * i];
-      instants_[i] = instants_[2 * i] + instants_[2 * i + 1];
-      for (std::size_t d = 0; d < blocks_[i].size(); ++d) {
-        blocks_[i][d].merge(blocks_[2 * i + 1][d]);
-      }
-    }
-    count_ = kBlocks / 2;
+    join_neighbours(instants_, kBlocks, [](auto& block, auto next) { block += next; });
+    count_ = join_neighbours(blocks_, kBlocks, [](Factors& block, const Factors& next) {
+      for (std::size_t d = 0; d < block.size(); ++d) block[d].merge(next[d]);
+    });
     length_ *= 2;
   }
 
