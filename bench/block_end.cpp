@@ -60,50 +60,41 @@ void block_end(benchmark::State& state) {
   }
 }
 
+/// What `answer` costs after so many seconds of a ride.
 template <class Answer>
 void after(benchmark::State& state, Answer answer) {
-  const auto chain = std::make_unique<Chain<Parts::kEstimate>>();
-  const auto methods = std::make_unique<Methods>(chain_config());
-  const auto phase = std::make_unique<PhaseView>(PhaseViewConfig{});
-  const auto diagnosis = std::make_unique<effect::Diagnosis>(chain_config());
+  const auto chain = std::make_unique<Chain<kExplainParts>>();
   SampleFeed feed;
-  for (std::int64_t i = 0; i < 300 * state.range(0); ++i) {
-    const Sample sample = feed.next();
-    const UpdateResult result = chain->identifier().update(sample);
-    methods->update(result);
-    if (result.has_motion) phase->update(result.motion);
-    diagnosis->update(sample, result);
-  }
-  answer(state, chain->identifier(), *methods, *phase, *diagnosis);
+  for (std::int64_t i = 0; i < 300 * state.range(0); ++i) chain->push(feed.next());
+  answer(state, *chain);
 }
 
 void snapshot(benchmark::State& state) {
-  after(state, [](auto& s, Estimator& identifier, auto&, auto&, auto&) {
-    while (s.KeepRunning()) benchmark::DoNotOptimize(identifier.snapshot());
+  after(state, [](auto& s, auto& chain) {
+    while (s.KeepRunning()) benchmark::DoNotOptimize(chain.snapshot());
   });
 }
 
 void densities(benchmark::State& state) {
-  after(state, [](auto& s, auto&, const Methods& methods, auto&, auto&) {
-    while (s.KeepRunning())
-      benchmark::DoNotOptimize(methods.fokker_planck().estimates(37200.0, 5.26e6));
+  after(state, [](auto& s, auto& chain) {
+    while (s.KeepRunning()) benchmark::DoNotOptimize(chain.density().estimates(37200.0, 5.26e6));
   });
 }
 
 void phase_snapshot(benchmark::State& state) {
-  after(state, [](auto& s, auto&, auto&, const PhaseView& phase, auto&) {
+  after(state, [](auto& s, auto& chain) {
     const auto out = std::make_unique<PhaseSnapshot>();
     while (s.KeepRunning()) {
-      phase.snapshot(*out);
+      chain.phase().snapshot(*out);
       benchmark::DoNotOptimize(*out);
     }
   });
 }
 
 void explanation(benchmark::State& state) {
-  after(state, [](auto& s, auto&, auto&, auto&, const effect::Diagnosis& diagnosis) {
+  after(state, [](auto& s, auto& chain) {
     const auto explainer = std::make_unique<effect::Explainer>();
-    while (s.KeepRunning()) benchmark::DoNotOptimize(explainer->explain(diagnosis, {}));
+    while (s.KeepRunning()) benchmark::DoNotOptimize(chain.explanation(*explainer, {}));
   });
 }
 

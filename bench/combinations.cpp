@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "app/explain/fault_veto.hpp"
-#include "app/identify/fault_watch.hpp"
+#include "app/identify/fault_findings.hpp"
 #include "bench/guard_cases.hpp"
-#include "dampline/effect/explainer.hpp"
+#include "dampline/effect/judgement.hpp"
+#include "dampline/identifier.hpp"
 
 namespace dampline::bench {
 
@@ -111,46 +111,43 @@ inline app::Config config_of(const GuardRecord& record) {
 }
 
 inline Decision decide(const GuardRecord& record) {
+  constexpr Parts kParts{
+      .frames = false, .densities = false, .phase = false, .alarms = false, .effects = true};
   const app::Config config = config_of(record);
-  EstimatorConfig core;
-  core.moving_mass_kg = config.car.moving_mass_kg;
-  core.screen.step_mps2 = record.guard.step_mps2;
-  const auto identifier = std::make_unique<Estimator>(core);
-  const auto diagnosis = std::make_unique<effect::Diagnosis>(core);
-  app::FaultWatch watch{config, core};
-  const auto use = [&](const Sample& sample) {
-    diagnosis->update(sample, identifier->update(sample));
-  };
+  IdentifierConfig core;
+  core.estimator.moving_mass_kg = config.car.moving_mass_kg;
+  core.estimator.screen.step_mps2 = record.guard.step_mps2;
+  core.guard = record.guard;
+  core.guard.leading = Leading::kWheelset1;
+  core.judgement_delay_s = config.guards.wait_s;
+  const auto run = std::make_unique<BasicIdentifier<kParts>>(core);
   sim::FaultyRecord source{record.simulation, record.faults};
   const auto samples = static_cast<std::int64_t>(record.length_s * sim::kSampleRateHz);
-  Sample due;
-  for (std::int64_t n = 0; n < samples; ++n) {
-    if (watch.take(sim::to_sample(source.next()), due)) use(due);
-  }
-  watch.close();
-  while (watch.drain(due)) use(due);
-  identifier->finish();
-  diagnosis->finish();
+  for (std::int64_t n = 0; n < samples; ++n) run->push(sim::to_sample(source.next()));
+  run->finish();
   const auto statistics = std::make_unique<Statistics>();
-  identifier->export_statistics(*statistics);
+  run->statistics(*statistics);
+  const effect::Circumstances circumstances{run->faults(),
+                                            find_parameter_drift(*statistics, Estimator::kBlockS)};
   app::TruckRecord truck;
-  truck.sample_rate_hz = core.sample_rate_hz;
+  truck.sample_rate_hz = core.estimator.sample_rate_hz;
   truck.newest_tick = samples;
   app::RunResult result;
-  watch.finish(truck, *statistics, result);
+  app::describe_faults_of_all(run->guard(), circumstances.faults, circumstances.drift, truck,
+                              core.estimator.sample_rate_hz, result);
   const auto explainer = std::make_unique<effect::Explainer>();
-  effect::ExplainerConfig wanted{.moving_mass_kg = core.moving_mass_kg};
-  app::disallow_mimics(result.faults, wanted);
-  const effect::Explanation explanation = explainer->explain(*diagnosis, wanted);
+  effect::Judgement judgement;
+  effect::judge(run->effects().store(), run->effects().impulses(), run->effects().grids(),
+                {.moving_mass_kg = core.estimator.moving_mass_kg}, circumstances, *explainer,
+                judgement);
   Decision out;
   out.data = result.faults;
   for (const app::FaultFinding& fault : result.faults.list) out.faults.push_back(fault.name);
-  out.withheld = app::forbids_naming(result.faults);
-  if (out.withheld) return out;
-  if (app::drift_explains_more(result.faults, explanation)) {
+  out.withheld = judgement.withheld;
+  if (judgement.drifts) {
     out.effect = "time_drift";
-  } else if (explanation.step_count > 0) {
-    out.effect = effect::name_of(explanation.step[0].chosen.effect);
+  } else if (judgement.explanation.step_count > 0) {
+    out.effect = effect::name_of(judgement.explanation.step[0].chosen.effect);
   }
   return out;
 }

@@ -197,14 +197,14 @@ inline effect::Grids true_grids(const sim::SimulationConfig& config, const Plant
 inline effect::Explanation true_fit_of(const app::Config& settings,
                                        const sim::SimulationConfig& config, const std::string& path,
                                        const Planted& planted) {
-  const double scale_m = app::pass_of(settings, {path, false}, {}).diagnosis->scale_m();
+  const double scale_m = app::pass_of(settings, {path, false}, {}).diagnosis().scale_m();
   const app::TruckPass pass =
       app::pass_of(settings, {path, false}, {true_grids(config, planted, scale_m), {}, false, {}});
   effect::ExplainerConfig wanted;
   wanted.moving_mass_kg = settings.car.moving_mass_kg;
   for (std::size_t i = 0; i < effect::kEffects; ++i)
     wanted.allowed[i] = planted.effect == effect::name_of(static_cast<effect::Effect>(i));
-  return std::make_unique<effect::Explainer>()->explain(*pass.diagnosis, wanted);
+  return std::make_unique<effect::Explainer>()->explain(pass.diagnosis(), wanted);
 }
 
 /// The base of the same record as sound sensors would have seen it.
@@ -217,7 +217,7 @@ inline effect::Explanation sound_fit_of(const app::Config& settings, sim::Simula
   effect::ExplainerConfig nothing;
   nothing.moving_mass_kg = settings.car.moving_mass_kg;
   nothing.allowed.fill(false);
-  return std::make_unique<effect::Explainer>()->explain(*pass.diagnosis, nothing);
+  return std::make_unique<effect::Explainer>()->explain(pass.diagnosis(), nothing);
 }
 
 /// None: impacts have no column, and of two effects none is looked at.

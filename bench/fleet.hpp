@@ -105,7 +105,7 @@ struct TruckCost {
 /// its own: 1 as if every sample were handed on at once, 32 as a logger that sends every 0.1 s.
 class Fleet {
  public:
-  using Truck = Chain<Parts::kEstimate>;
+  using Truck = Chain<kFramesToEstimate>;
   static constexpr std::size_t kLongestBatch = 32;
 
   explicit Fleet(std::size_t trucks)

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "bench/errors.hpp"
-#include "dampline/methods.hpp"
+#include "dampline/identifier.hpp"
 #include "sim_hw/simulation.hpp"
 #include "sim_hw/white_input.hpp"
 
@@ -107,17 +107,19 @@ inline sim::SimulationConfig simulation_of(const Ride& ride, std::uint64_t seed)
   return config;
 }
 
-/// The motion that the shipped identifier finds in the three accelerations.
-inline std::unique_ptr<Methods> run(const Ride& ride, std::uint64_t seed) {
+/// The densities of the motion that the shipped estimator finds in the three accelerations.
+inline std::unique_ptr<FokkerPlanck> run(const Ride& ride, std::uint64_t seed) {
   const sim::SimulationConfig config = simulation_of(ride, seed);
-  const EstimatorConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
-  const auto identifier = std::make_unique<Estimator>(identifier_config);
-  auto methods = std::make_unique<Methods>(identifier_config);
+  const EstimatorConfig estimator_config{.moving_mass_kg = config.truck.moving_mass_kg};
+  const auto estimator = std::make_unique<Estimator>(estimator_config);
+  auto density = std::make_unique<FokkerPlanck>(density_config(estimator_config));
   sim::Simulation simulation{config};
   const auto samples = std::llround(ride.seconds * sim::kSampleRateHz);
-  for (std::int64_t i = 0; i < samples; ++i)
-    methods->update(identifier->update(sim::to_sample(simulation.next())));
-  return methods;
+  for (std::int64_t i = 0; i < samples; ++i) {
+    const UpdateResult result = estimator->update(sim::to_sample(simulation.next()));
+    if (result.has_motion) density->update(result.motion);
+  }
+  return density;
 }
 
 }  // namespace dampline::bench
@@ -260,7 +262,7 @@ Verdicts print_track(const Seeds& seeds, double& worst_known) {
     Tallies all;
     const sim::TruckConfig truck = sim::truck_of(ride.load);
     for (std::uint64_t i = 0; i < seeds.count; ++i)
-      tally(run(ride, seeds.first + i)->fokker_planck(), truck, false, all);
+      tally(*run(ride, seeds.first + i), truck, false, all);
     const char* track = ride.amplitude_m_rad == sim::kTrackAmplitudeHigh ? "poor" : "good";
     fmt::print("| {} | {:.0f} | {}{} |", name_of(ride.load), ride.speed_kmh, track,
                ride.short_wave_mps2 > 0.0 ? "" : ", not corrugated");

@@ -118,10 +118,10 @@ int run(int argc, char** argv) {
                                  {"page_faults", times.page_faults}});
     if (csv.is_open()) write_csv(csv, name, times.ns);
   };
-  report("to the estimate", measure<Parts::kEstimate>());
-  report("and densities", measure<Parts::kDensities>());
-  report("and phase and guards", measure<Parts::kIdentify>());
-  report("and every candidate's sums", measure<Parts::kExplain>());
+  report("to the estimate", measure<kFramesToEstimate>());
+  report("and densities", measure<kFramesToDensities>());
+  report("and phase and guards", measure<kIdentifyParts>());
+  report("and every candidate's sums", measure<kExplainParts>());
   if (!json.empty()) std::ofstream{json} << out.dump(2) << '\n';
   return quiet ? 0 : 1;
 }

@@ -196,7 +196,7 @@ void trucks(const Limit& limit, nlohmann::json& out) {
 void windows(nlohmann::json& out) {
   fmt::print("\n| memory | ns per sample of Estimator::update |\n|--|--|\n");
   const auto measure = [&out](const char* name, Memory memory, double seconds) {
-    EstimatorConfig config = chain_config();
+    EstimatorConfig config = chain_config().estimator;
     config.memory = memory;
     if (memory != Memory::kInfinite) config.memory_s = seconds;
     const auto identifier = std::make_unique<Estimator>(config);

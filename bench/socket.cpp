@@ -84,7 +84,7 @@ std::vector<std::int64_t> measure() {
     if (i >= 0) times.push_back(std::chrono::nanoseconds{Clock::now() - start}.count());
   }
   std::sort(times.begin(), times.end());
-  return chain->identifier().snapshot().valid ? times : std::vector<std::int64_t>{};
+  return chain->snapshot().valid ? times : std::vector<std::int64_t>{};
 }
 
 template <Parts kParts>
@@ -111,10 +111,10 @@ int run(int argc, char** argv) {
       "| recvmmsg to result, ns per instant of three frames, {} instants | p50 | p90 | p99 | p99.9 "
       "| largest |\n|--|--|--|--|--|--|\n",
       kInstants);
-  const bool ok = report<Parts::kEstimate>("to the estimate", out) &&
-                  report<Parts::kDensities>("and densities", out) &&
-                  report<Parts::kIdentify>("and phase and guards", out) &&
-                  report<Parts::kExplain>("and every candidate's sums", out);
+  const bool ok = report<kFramesToEstimate>("to the estimate", out) &&
+                  report<kFramesToDensities>("and densities", out) &&
+                  report<kIdentifyParts>("and phase and guards", out) &&
+                  report<kExplainParts>("and every candidate's sums", out);
   if (!ok) fmt::print("a frame was lost on the way\n");
   if (argc == 3 && std::string_view{argv[1]} == "--json")
     std::ofstream{argv[2]} << out.dump(2) << '\n';

@@ -42,7 +42,7 @@ void decode(benchmark::State& state) {
 }
 
 void screen(benchmark::State& state) {
-  const auto screen = std::make_unique<SampleScreen>(chain_config().screen);
+  const auto screen = std::make_unique<SampleScreen>(chain_config().estimator.screen);
   SampleFeed source;
   Screened out;
   time_samples(state, 300, [&] { benchmark::DoNotOptimize(screen->push(source.next(), out)); });
@@ -147,13 +147,13 @@ void phase_view(benchmark::State& state) {
 }
 
 void guard(benchmark::State& state) {
-  const auto guard = std::make_unique<Guard>(guard_config());
+  const auto guard = std::make_unique<Guard>(guard_config(chain_config()));
   SampleFeed source;
   time_samples(state, 9000, [&] { guard->update(source.next()); });
 }
 
 void effect_diagnosis(benchmark::State& state) {
-  const auto diagnosis = std::make_unique<effect::Diagnosis>(chain_config());
+  const auto diagnosis = std::make_unique<effect::Diagnosis>(chain_config().estimator);
   HeardFeed source;
   time_samples(state, 9000, [&] {
     const Heard heard = source.next();
@@ -162,7 +162,7 @@ void effect_diagnosis(benchmark::State& state) {
 }
 
 void identifier(benchmark::State& state) {
-  const auto identifier = std::make_unique<Estimator>(chain_config());
+  const auto identifier = std::make_unique<Estimator>(chain_config().estimator);
   SampleFeed source;
   time_samples(state, 27000, [&] { benchmark::DoNotOptimize(identifier->update(source.next())); });
 }
@@ -172,7 +172,7 @@ void chain(benchmark::State& state) {
   const auto chain = std::make_unique<Chain<kParts>>();
   FrameFeed source;
   time_samples(state, 27000, [&] { chain->push(source.next()); });
-  if (!chain->identifier().snapshot().valid) state.SkipWithError("nothing was identified");
+  if (!chain->snapshot().valid) state.SkipWithError("nothing was identified");
 }
 
 BENCHMARK(feed<SampleFeed>)->Name("feed/samples");
@@ -192,10 +192,10 @@ BENCHMARK(phase_view)->Name("phase/view");
 BENCHMARK(guard)->Name("guard/update");
 BENCHMARK(effect_diagnosis)->Name("effect/diagnosis");
 BENCHMARK(identifier)->Name("identifier/update");
-BENCHMARK(chain<Parts::kEstimate>)->Name("chain/estimate");
-BENCHMARK(chain<Parts::kDensities>)->Name("chain/densities");
-BENCHMARK(chain<Parts::kIdentify>)->Name("chain/identify");
-BENCHMARK(chain<Parts::kExplain>)->Name("chain/explain");
+BENCHMARK(chain<kFramesToEstimate>)->Name("chain/estimate");
+BENCHMARK(chain<kFramesToDensities>)->Name("chain/densities");
+BENCHMARK(chain<kIdentifyParts>)->Name("chain/identify");
+BENCHMARK(chain<kExplainParts>)->Name("chain/explain");
 
 }  // namespace
 }  // namespace dampline::bench

@@ -32,11 +32,8 @@ class CloserLook {
  public:
   CloserLook(const Config& config, const ExplainOptions& options, const TruckPass& first,
              const FrameNoise& noise, effect::Explainer& explainer)
-      : config_{config},
-        options_{options},
-        core_{identifier_config(config)},
-        explainer_{explainer} {
-    core_.screen = first.feed->screen();
+      : config_{config}, options_{options}, core_{estimator_config(config)}, explainer_{explainer} {
+    core_.screen = first.run->config().estimator.screen;
     noise_mps2_ = noise_of_record(first, noise, core_.screen.step_mps2);
   }
 
@@ -55,8 +52,8 @@ class CloserLook {
     const TruckPass pass = pass_of(config_, options_.source, reading);
     effect::ExplainerConfig wanted = explainer_config(config_, known);
     wanted.known = &known.explanation;
-    effect::Explanation out = explainer_.explain(*pass.diagnosis, wanted);
-    if (late) left = lateness_left(*pass.diagnosis, twin.get(), out);
+    effect::Explanation out = explainer_.explain(pass.diagnosis(), wanted);
+    if (late) left = lateness_left(pass.diagnosis(), twin.get(), out);
     return out;
   }
 

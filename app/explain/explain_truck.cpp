@@ -12,6 +12,7 @@
 #include "app/explain/truck_pass.hpp"
 #include "app/explain/truck_points.hpp"
 #include "app/explain/truck_verdict.hpp"
+#include "app/identify/identify_source.hpp"
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::app {
@@ -21,7 +22,7 @@ namespace {
 Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
                    Explained& out, effect::Explainer& explainer) {
   std::vector<PredictedRow>& rows = out.identified.evidence.prediction;
-  const EstimatorConfig core = identifier_config(config);
+  const EstimatorConfig core = estimator_config(config);
   const auto keep = [&](const EvidencePoint& p) {
     rows.push_back({number, p.time_s, p.measured_n, p.final_n, p.base_n,
                     std::numeric_limits<double>::quiet_NaN()});
@@ -33,7 +34,7 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
     points.take(sample, result, diagnosis);
   };
   const TruckPass pass = pass_of(config, source, options);
-  const auto found = explainer.predict(*pass.diagnosis, out.explanation);
+  const auto found = explainer.predict(pass.diagnosis(), out.explanation);
   if (!(found.base_nmse > 0.0))
     throw RunError{fmt::format("{}: too short to validate on", source.path)};
   return {source.path, found.base_nmse, found.final_nmse};
@@ -42,21 +43,22 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
 }  // namespace
 
 Explained explain_truck(const Config& config, const ExplainOptions& options) {
-  const EstimatorConfig core = identifier_config(config);
+  const EstimatorConfig core = estimator_config(config);
   FrameNoise noise{core.sample_rate_hz, core.anti_alias};
   const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
     noise.take(sample);
   };
   const TruckPass pass = pass_of(config, options.source, {{}, {}, options.show_progress, listen});
   Explained out;
-  out.identified = pass.run->finish(pass.feed->rate(), options.source.path);
-  pass.feed->describe(out.identified);
+  out.identified = pass.run->finish(rate_of(*pass.feed, *pass.run), options.source.path);
+  pass.feed->describe(pass.run->frames(), out.identified);
+  out.circumstances = pass.run->circumstances();
   const auto explainer = std::make_unique<effect::Explainer>();
   while (true) {
-    if (!judge_sums(config, *pass.diagnosis, *explainer, out))
+    if (!judge_sums(config, pass.diagnosis(), *explainer, out))
       throw RunError{
           fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
-                      options.source.path, pass.diagnosis->store().count())};
+                      options.source.path, pass.diagnosis().store().count())};
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out);

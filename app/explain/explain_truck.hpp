@@ -11,6 +11,7 @@
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
 #include "dampline/effect/conclusion.hpp"
+#include "dampline/effect/judgement.hpp"
 
 namespace dampline::app {
 
@@ -22,11 +23,9 @@ struct Validated {
 };
 
 /// A truck record explained.
-struct Explained {
-  effect::Explanation explanation;
-  LateChannel lateness;  ///< of a channel that was set right for the explanation
-  bool withheld{false};  ///< faults of the data forbid to name an effect
-  bool drifts{false};    ///< a parameter that changed explains more than any effect
+struct Explained : effect::Judgement {
+  effect::Circumstances circumstances;  ///< of the record
+  LateChannel lateness;                 ///< of a channel that was set right for the explanation
   /// By Effect: what looked like one at first and was none, and is no candidate any more.
   std::array<bool, effect::kEffects> needless{};
   std::vector<Validated> validation;

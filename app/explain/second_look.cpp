@@ -15,8 +15,8 @@ constexpr double kLeastTurn = 0.05;  // of the deflection's rms: smaller ones ar
 constexpr double kLawReach = 2.5;    // of the velocity's rms
 
 EvidenceScale scale_of(const EstimatorConfig& core, const TruckPass& first) {
-  const double deflection_m = first.diagnosis->deflection_rms_m();
-  return {deflection_m, first.diagnosis->velocity_rms_mps(), kLeastTurn * deflection_m,
+  const double deflection_m = first.diagnosis().deflection_rms_m();
+  return {deflection_m, first.diagnosis().velocity_rms_mps(), kLeastTurn * deflection_m,
           core.sample_rate_hz, first.run->time_s()};
 }
 
@@ -54,7 +54,7 @@ void read_again(const Config& config, const ExplainOptions& options, const Estim
   evidence = {};
   meter.fill(evidence);
   evidence.law = truck_law(out.explanation, core.moving_mass_kg,
-                           kLawReach * first.diagnosis->velocity_rms_mps());
+                           kLawReach * first.diagnosis().velocity_rms_mps());
   out.signature = meter.signature();
 }
 
@@ -69,8 +69,8 @@ bool can_read_again(const std::string& path) {
 void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
   if (!can_read_again(options.source.path)) return;
-  EstimatorConfig core = identifier_config(config);
-  core.screen = first.feed->screen();
+  EstimatorConfig core = estimator_config(config);
+  core.screen = first.run->config().estimator.screen;
   const TwinConfig declared =
       twin_config(core, out.explanation, noise_of_record(first, noise, core.screen.step_mps2));
   const Twins twins = twins_of(core, declared, out.explanation);

@@ -24,37 +24,41 @@ SourceKind truck_source(const Config& config, const SourceOptions& source) {
   return kind;
 }
 
+/// Hands on what a pass's second way made of its samples.
+struct AlignedWatch {
+  const TruckPassOptions& options;
+  const TruckPass& pass;
+  void taken(const Sample& /*unused*/) const noexcept {}
+  void judged(const Sample& sample, const UpdateResult& result) const {
+    if (options.watch) options.watch(sample, result, pass.diagnosis());
+  }
+};
+
 }  // namespace
 
 TruckPass pass_of(const Config& config, const SourceOptions& source,
                   const TruckPassOptions& options) {
   TruckPass pass;
-  EstimatorConfig core = identifier_config(config);
+  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
   pass.feed = open_feed(config, source, truck_source(config, source));
-  core.screen = pass.feed->screen();
-  pass.run = std::make_unique<TruckRun>(config, core.screen);
-  pass.diagnosis = std::make_unique<effect::Diagnosis>(core, options.grids);
-  const auto take = [&diagnosis = *pass.diagnosis, &options](const Sample& sample,
-                                                             const UpdateResult& result) {
-    diagnosis.update(sample, result);
-    if (options.watch) options.watch(sample, result, diagnosis);
-  };
-  std::unique_ptr<Estimator> second;
-  Alignment alignment{options.lateness, core.sample_rate_hz};
-  if (options.lateness.late_s == 0.0) {
-    pass.run->watch(take);
-  } else {
-    second = std::make_unique<Estimator>(core);
-    pass.run->watch([&](const Sample& sample, const UpdateResult&) {
-      const auto aligned = alignment.next(sample);
-      if (aligned) take(*aligned, second->update(*aligned));
+  pass.run = std::make_unique<ExplainRun>(config, pass.feed->signals(), options.grids);
+  const IdentifierConfig& core = pass.run->config();
+  Alignment alignment{options.lateness, core.estimator.sample_rate_hz};
+  if (options.lateness.late_s != 0.0) {
+    pass.aligned = std::make_unique<DiagnosisRun>(core, options.grids);
+    AlignedWatch watch{options, pass};
+    pass.run->watch([&alignment, &pass, watch](const Sample& sample, const UpdateResult&) mutable {
+      if (const auto aligned = alignment.next(sample)) pass.aligned->push(*aligned, watch);
+    });
+  } else if (options.watch) {
+    pass.run->watch([&options, &pass](const Sample& sample, const UpdateResult& result) {
+      options.watch(sample, result, pass.diagnosis());
     });
   }
-  const auto no_state = [](const TruckRun&) { return std::string{}; };
-  pump(*pass.feed, source, options.show_progress, no_state, *pass.run);
+  pump(*pass.feed, source, options.show_progress, *pass.run);
   pass.run->close();
   pass.run->watch({});
-  pass.diagnosis->finish();
+  if (pass.aligned) pass.aligned->finish();
   return pass;
 }
 

@@ -11,11 +11,17 @@
 
 namespace dampline::app {
 
+/// A second way for samples that were set right: no frames, no guards, the sums alone.
+using DiagnosisRun = BasicIdentifier<kDiagnosisParts>;
+
 /// One record through the estimate and the diagnosis beside it.
 struct TruckPass {
   std::unique_ptr<SampleFeed> feed;
-  std::unique_ptr<TruckRun> run;
-  std::unique_ptr<effect::Diagnosis> diagnosis;
+  std::unique_ptr<ExplainRun> run;
+  std::unique_ptr<DiagnosisRun> aligned;  ///< where a channel was set right; else null
+  [[nodiscard]] const effect::Diagnosis& diagnosis() const noexcept {
+    return aligned ? aligned->effects() : run->core().effects();
+  }
 };
 
 struct TruckPassOptions {

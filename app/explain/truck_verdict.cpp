@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/explain/fault_veto.hpp"
-
 namespace dampline::app {
 namespace {
 
@@ -41,7 +39,7 @@ effect::ExplainerConfig explainer_config(const Config& config) {
 
 effect::ExplainerConfig explainer_config(const Config& config, const Explained& known) {
   effect::ExplainerConfig out = explainer_config(config);
-  disallow_mimics(known.identified.faults, out);
+  disallow_mimics(known.circumstances.faults.list(), out);
   for (std::size_t i = 0; i < effect::kEffects; ++i)
     out.allowed[i] = out.allowed[i] && !known.needless[i];
   return out;
@@ -49,12 +47,9 @@ effect::ExplainerConfig explainer_config(const Config& config, const Explained& 
 
 bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
                 effect::Explainer& explainer, Explained& out) {
-  out.explanation = explainer.explain(diagnosis, explainer_config(config, out));
-  if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
-  out.withheld = forbids_naming(out.identified.faults);
-  out.drifts = !out.withheld && drift_explains_more(out.identified.faults, out.explanation);
-  if (out.withheld || out.drifts) withhold_effects(out.explanation);
-  return true;
+  effect::judge(diagnosis.store(), diagnosis.impulses(), diagnosis.grids(),
+                explainer_config(config, out), out.circumstances, explainer, out);
+  return out.explanation.conclusion != effect::Conclusion::kNotReady;
 }
 
 effect::Effect needless_effect(const effect::Explanation& e) noexcept {

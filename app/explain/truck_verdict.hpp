@@ -12,8 +12,7 @@ namespace dampline::app {
 [[nodiscard]] effect::ExplainerConfig explainer_config(const Config& config,
                                                        const Explained& known);
 
-/// Explains the sums of a record, of which out.identified tells the faults: where these forbid it,
-/// no effect is named. False: the record is too short.
+/// Explains the sums of a record under its circumstances. False: the record is too short.
 [[nodiscard]] bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
                               effect::Explainer& explainer, Explained& out);
 

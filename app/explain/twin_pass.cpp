@@ -28,7 +28,8 @@ std::array<double, kChannels> noise_of(std::array<double, kChannels> seen_mps2,
 
 std::array<double, kChannels> noise_of_record(const TruckPass& first, const FrameNoise& frame,
                                               const std::array<double, kChannels>& step_mps2) {
-  std::array<double, kChannels> seen = first.run->noise_mps2();
+  std::array<double, kChannels> seen{};
+  for (std::size_t c = 0; c < kChannels; ++c) seen[c] = first.run->core().guard().noise_mps2(c);
   const double whole = frame.noise_mps2();
   if (seen[0] > 0.0 && whole > 0.0)
     seen[0] = std::clamp(whole, seen[0] / kNoiseDoubt, kNoiseDoubt * seen[0]);

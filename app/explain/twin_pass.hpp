@@ -32,15 +32,13 @@ class TwinPass {
   TwinPass(const EstimatorConfig& core, const TwinConfig& config, const effect::Grids& grids)
       : remembers_{config.memory.force_mps2 > 0.0},
         twin_{config},
-        identifier_{std::make_unique<Estimator>(core)},
-        diagnosis_{std::make_unique<effect::Diagnosis>(core, grids)} {}
+        run_{std::make_unique<DiagnosisRun>(IdentifierConfig{.estimator = core}, grids)} {}
   void take(const Sample& sample) {
-    const auto twin = twin_.next(sample);
-    if (twin) diagnosis_->update(*twin, identifier_->update(*twin));
+    if (const auto twin = twin_.next(sample)) run_->push(*twin);
   }
   [[nodiscard]] const effect::Diagnosis& finish() {
-    diagnosis_->finish();
-    return *diagnosis_;
+    run_->finish();
+    return run_->effects();
   }
 
   [[nodiscard]] bool remembers() const { return remembers_; }
@@ -48,8 +46,7 @@ class TwinPass {
  private:
   bool remembers_;
   Twin twin_;
-  std::unique_ptr<Estimator> identifier_;
-  std::unique_ptr<effect::Diagnosis> diagnosis_;
+  std::unique_ptr<DiagnosisRun> run_;
 };
 
 }  // namespace dampline::app

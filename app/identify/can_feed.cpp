@@ -22,28 +22,18 @@ template <class Source>
 class CanFeed final : public SampleFeed {
  public:
   CanFeed(const Config& config, std::unique_ptr<Source> source, const AssemblerConfig& assembler)
-      : dbc_{config.input.can.dbc},
-        source_{std::move(source)},
-        wanted_{assembler.channels},
-        assembler_{std::make_unique<SampleAssembler>(assembler)} {}
+      : dbc_{config.input.can.dbc}, source_{std::move(source)}, wanted_{assembler.channels} {}
 
-  bool read(std::vector<Sample>& out) override {
+  Batch read() override {
     const auto count = source_->read(frames_);
     if (!count.ok() && count.error() != Errc::kEndOfStream) throw RunError{source_->error_text()};
     if (count.ok() && count.value() == 0) static_cast<void>(source_->wait(kPatience));
-    for (std::size_t i = 0; count.ok() && i < count.value(); ++i) {
-      assembler_->push(frames_[i]);
-      take_ready(out);
-    }
     hal::Event event;
     while (source_->next_event(event)) events_.add(event);
-    if (count.ok()) return true;
-    assembler_->flush();
-    take_ready(out);
-    return false;
+    if (!count.ok()) return {.more = false};
+    return {.frames = std::span{frames_}.first(count.value())};
   }
-  [[nodiscard]] MeasuredRate rate() const override { return assembler_->measured_rate(); }
-  [[nodiscard]] ScreenConfig screen() const override { return screen_of(wanted_); }
+  [[nodiscard]] RecordSignals signals() const override { return {wanted_, screen_of(wanted_)}; }
   [[nodiscard]] std::uint64_t lines() const override {
     if constexpr (requires { source_->line_number(); }) return source_->line_number();
     return 0;
@@ -52,30 +42,20 @@ class CanFeed final : public SampleFeed {
     if (dbc_.empty()) return {};
     return {describe_input(dbc_, "dbc")};
   }
-  [[nodiscard]] std::string explain_emptiness() const override {
-    return explain_no_sample(source_->health(), assembler_->counts(), wanted_);
+  [[nodiscard]] std::string explain_emptiness(const FrameSummary& frames) const override {
+    return explain_no_sample(source_->health(), frames.counts, wanted_);
   }
-  void describe(RunResult& result) const override {
-    describe_frames(source_->health(), assembler_->counts(), result);
-    events_.describe(first_time_ns_.value_or(0), result);
+  void describe(const FrameSummary& frames, RunResult& result) const override {
+    describe_frames(source_->health(), frames.counts, result);
+    events_.describe(frames.first_time_ns, result);
   }
 
  private:
-  void take_ready(std::vector<Sample>& out) {
-    Sample sample;
-    while (assembler_->pop(sample)) {
-      if (!first_time_ns_) first_time_ns_ = sample.time_ns;
-      out.push_back(sample);
-    }
-  }
-
   std::string dbc_;
   std::unique_ptr<Source> source_;
   std::array<ChannelConfig, kChannels> wanted_;
-  std::unique_ptr<SampleAssembler> assembler_;
   std::array<CanFrame, kFrameBatch> frames_{};
   EventList events_;
-  std::optional<std::int64_t> first_time_ns_;
 };
 
 }  // namespace

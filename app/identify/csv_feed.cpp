@@ -26,35 +26,36 @@ class CsvFeed final : public SampleFeed {
     clock_ = RowClock{first_hz > 0.0 ? first_hz : input.sample_rate_hz};
   }
 
-  bool read(std::vector<Sample>& out) override {
+  Batch read() override {
     batch_.clear();
+    samples_.clear();
     const bool more = rows_.read(batch_);
-    for (const TruckRows::Row& row : batch_) hand_on(to_sample(row), out);
-    return more;
+    for (const TruckRows::Row& row : batch_) hand_on(to_sample(row));
+    return {.samples = samples_, .more = more};
   }
-  [[nodiscard]] MeasuredRate rate() const override {
+  [[nodiscard]] std::optional<MeasuredRate> rate() const override {
     const MeasuredRate rows = clock_.rate();
     const double factor = thinner_.factor();
-    return {rows.rate_hz / factor, rows.std_hz / factor, rows.samples};
+    return MeasuredRate{rows.rate_hz / factor, rows.std_hz / factor, rows.samples};
   }
-  [[nodiscard]] ScreenConfig screen() const override {
-    ScreenConfig screen;
+  [[nodiscard]] RecordSignals signals() const override {
+    RecordSignals out;
     const auto& range = input_.range_mps2;
-    screen.find_flat_tops = !std::all_of(range.begin(), range.end(),
-                                         [](const auto& limit) { return limit.has_value(); });
-    return screen;
+    out.screen.find_flat_tops = !std::all_of(range.begin(), range.end(),
+                                             [](const auto& limit) { return limit.has_value(); });
+    return out;
   }
   [[nodiscard]] std::uint64_t lines() const override { return rows_.reader().health().line; }
-  [[nodiscard]] std::string explain_emptiness() const override {
+  [[nodiscard]] std::string explain_emptiness(const FrameSummary& /*unused*/) const override {
     return fmt::format("{} rows, {} malformed lines skipped", rows_.reader().health().rows,
                        rows_.reader().health().malformed);
   }
-  void describe(RunResult& result) const override {
+  void describe(const FrameSummary& /*unused*/, RunResult& result) const override {
     describe_csv(rows_.reader(), result);
     if (thinner_.factor() > 1)
       result.notes.push_back(
           fmt::format("Sampled at {:.6g} Hz; low-passed and thinned by {} to {:.6g} Hz.",
-                      clock_.rate().rate_hz, thinner_.factor(), rate().rate_hz));
+                      clock_.rate().rate_hz, thinner_.factor(), rate()->rate_hz));
   }
 
  private:
@@ -62,18 +63,18 @@ class CsvFeed final : public SampleFeed {
 
   /// Flat tops are seen before the low pass rounds them.
   [[nodiscard]] ScreenConfig raw_screen() const {
-    ScreenConfig raw = screen();
+    ScreenConfig raw = signals().screen;
     raw.sample_rate_hz = input_.sample_rate_hz;
     raw.stuck_s = kScreened / raw.sample_rate_hz;
     return raw;
   }
-  void hand_on(const Sample& sample, std::vector<Sample>& out) {
+  void hand_on(const Sample& sample) {
     Screened screened{sample};
     if (raw_screen_ && !raw_screen_->push(sample, screened)) return;
     if (screened.verdict == Verdict::kSaturated)
       screened.sample.saturated =
           static_cast<std::uint8_t>(screened.sample.saturated | screened.channels);
-    if (Sample thinned; thinner_.take(screened.sample, thinned)) out.push_back(thinned);
+    if (Sample thinned; thinner_.take(screened.sample, thinned)) samples_.push_back(thinned);
   }
   [[nodiscard]] Sample to_sample(const TruckRows::Row& row) {
     const RowClock::Stamp stamp = clock_.next(row[0]);
@@ -89,6 +90,7 @@ class CsvFeed final : public SampleFeed {
   InputConfig input_;
   TruckRows rows_;
   std::vector<TruckRows::Row> batch_;
+  std::vector<Sample> samples_;
   RowClock clock_{1.0};
   Thinner thinner_;
   std::optional<SampleScreen> raw_screen_;

@@ -16,25 +16,15 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::size_t kSampleBatch = 4096;
-
-std::string state_text(const TruckRun& run) {
-  const ConvergenceHistory::Row* row = run.newest();
-  if (row == nullptr) return "";
-  return fmt::format("Fc {:.0f} +- {:.0f} N  k {:.3f} +- {:.3f} MN/m", row->coulomb_n.value,
-                     row->coulomb_n.std, 1e-6 * row->stiffness_npm.value,
-                     1e-6 * row->stiffness_npm.std);
-}
-
 Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
                           bool show_progress) {
-  static_cast<void>(identifier_config(config));  // wrong settings before a wrong source
+  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
   const auto feed = open_feed(config, source, kind);
-  TruckRun run{config, feed->screen()};
-  pump(*feed, source, show_progress, state_text, run);
+  TruckRun<kIdentifyParts> run{config, feed->signals()};
+  pump(*feed, source, show_progress, run);
   Identified out;
-  out.result = run.finish(feed->rate(), source.path);
-  feed->describe(out.result);
+  out.result = run.finish(rate_of(*feed, run), source.path);
+  feed->describe(run.frames(), out.result);
   out.inputs = feed->extra_inputs();
   out.state = run.encoded_state();
   return out;
@@ -57,26 +47,6 @@ InputFile describe_record(const std::string& path) {
 }
 
 }  // namespace
-
-void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
-          const std::function<std::string(const TruckRun&)>& state, TruckRun& run) {
-  const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
-  Progress progress{show_progress};
-  std::vector<Sample> samples;
-  samples.reserve(kSampleBatch);
-  for (bool more = true; more;) {
-    samples.clear();
-    more = feed.read(samples);
-    for (const Sample& sample : samples) run.take(sample);
-    if (!progress.due()) continue;
-    const auto share =
-        lines ? std::optional{static_cast<double>(feed.lines()) / *lines} : std::nullopt;
-    progress.show(share, run.time_s(), state(run));
-  }
-  if (run.empty())
-    throw RunError{
-        fmt::format("{}: holds no complete sample: {}", source.path, feed.explain_emptiness())};
-}
 
 std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
                                       SourceKind kind) {

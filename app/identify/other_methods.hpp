@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include "app/identify/truck_result.hpp"
-#include "dampline/methods.hpp"
+#include "dampline/density/fokker_planck.hpp"
 #include "dampline/phase/view.hpp"
 
 namespace dampline::app {

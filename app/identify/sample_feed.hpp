@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,31 +12,55 @@
 #include "app/config/config.hpp"
 #include "app/run/checksum.hpp"
 #include "app/run/result.hpp"
+#include "dampline/can_frame.hpp"
 #include "dampline/sample.hpp"
+#include "dampline/sample/assembler.hpp"
 #include "dampline/sample/screen.hpp"
 #include "dampline/sample/ticks.hpp"
 
 namespace dampline::app {
 
-/// Where the samples of a truck record come from. read() throws RunError with file and line.
+/// What a source tells of its channels: where they stand in frames, if it has frames, and their
+/// resolution.
+struct RecordSignals {
+  std::array<ChannelConfig, kChannels> channels{};
+  ScreenConfig screen{};  ///< its rate is the configuration's
+};
+
+/// What a source handed over: frames to be decoded, or samples as rows hold them. Valid until the
+/// next read().
+struct Batch {
+  std::span<const CanFrame> frames{};
+  std::span<const Sample> samples{};
+  bool more{true};  ///< false: there will be no more
+};
+
+/// What a run knows of the frames that a source gave it.
+struct FrameSummary {
+  AssemblerCounts counts;
+  std::int64_t first_time_ns{0};  ///< of the first sample
+};
+
+/// Where a truck record comes from. read() throws RunError with file and line.
 class SampleFeed {
  public:
   SampleFeed() = default;
   SampleFeed(const SampleFeed&) = delete;
   SampleFeed& operator=(const SampleFeed&) = delete;
   virtual ~SampleFeed() = default;
-  /// Appends a batch of samples; false when there will be no more. None and true: a pipe has
-  /// nothing yet, and a while was waited.
-  virtual bool read(std::vector<Sample>& out) = 0;
-  [[nodiscard]] virtual MeasuredRate rate() const = 0;
-  /// What is known of the channels beforehand: their resolution, whether full scale is known.
-  [[nodiscard]] virtual ScreenConfig screen() const = 0;
+  /// The next batch. An empty one with more to come: a pipe has nothing yet, and a while was
+  /// waited.
+  virtual Batch read() = 0;
+  /// What is known of the channels beforehand.
+  [[nodiscard]] virtual RecordSignals signals() const = 0;
+  /// Of rows; none where the corridor itself measures the rate of the frames.
+  [[nodiscard]] virtual std::optional<MeasuredRate> rate() const { return std::nullopt; }
   /// Lines read so far, for the progress line.
   [[nodiscard]] virtual std::uint64_t lines() const = 0;
   /// For an error message when not one sample came: what there was instead.
-  [[nodiscard]] virtual std::string explain_emptiness() const = 0;
+  [[nodiscard]] virtual std::string explain_emptiness(const FrameSummary& frames) const = 0;
   /// Adds what only the source knows: its counts, and notes for the reader of the report.
-  virtual void describe(RunResult& result) const = 0;
+  virtual void describe(const FrameSummary& frames, RunResult& result) const = 0;
   /// Files beside the record that went in (a DBC file).
   [[nodiscard]] virtual std::vector<InputFile> extra_inputs() const { return {}; }
 };

@@ -51,14 +51,31 @@ TruckRecord record_of(const TruckView& view, const MeasuredRate& rate, double no
           nominal_hz * correction.ratio,        view.first_tick, view.newest_tick};
 }
 
-EstimatorConfig with_screen(EstimatorConfig core, const ScreenConfig& screen) {
-  core.screen = screen;
-  return core;
+Leading leading_of(const std::string& word) {
+  if (word == "wheelset1") return Leading::kWheelset1;
+  return word == "wheelset2" ? Leading::kWheelset2 : Leading::kUnknown;
+}
+
+/// The corridor's settings; throws as estimator_config() does.
+IdentifierConfig core_config(const Config& config, const RecordSignals& signals) {
+  IdentifierConfig out;
+  out.estimator = estimator_config(config);
+  out.estimator.screen = signals.screen;
+  out.signals = signals.channels;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.guard.noise_mps2[c] = config.input.noise_mps2[c].value_or(0.0);
+  out.guard.wheelbase_m = config.car.wheelbase_m.value_or(0.0);
+  out.guard.speed_mps = config.input.speed_mps.value_or(0.0);
+  out.guard.leading = leading_of(config.input.leading);
+  out.judgement_delay_s = config.guards.wait_s;
+  if (!Guard::check(guard_config(out)).ok())
+    throw UsageError{"[input] anti_alias: not a filter that the guards know"};
+  return out;
 }
 
 }  // namespace
 
-EstimatorConfig identifier_config(const Config& config) {
+EstimatorConfig estimator_config(const Config& config) {
   EstimatorConfig core;
   core.sample_rate_hz = truck_rate_hz(config.input);
   core.moving_mass_kg = config.car.moving_mass_kg;
@@ -92,67 +109,6 @@ DataFaults faults_of(const TruckView& view, double nominal_hz) {
   return out;
 }
 
-TruckRun::TruckRun(const Config& config, const ScreenConfig& screen)
-    : core_{with_screen(identifier_config(config), screen)},
-      config_{config},
-      identifier_{std::make_unique<Estimator>(core_)},
-      methods_{std::make_unique<Methods>(core_)},
-      phase_{std::make_unique<PhaseView>(PhaseViewConfig{.sample_rate_hz = core_.sample_rate_hz})},
-      block_ticks_{Estimator::kBlockS * core_.sample_rate_hz},
-      history_{static_cast<std::int64_t>(kFirstIntervalSeconds * core_.sample_rate_hz), 0},
-      excerpt_{core_.sample_rate_hz},
-      faults_{config, core_},
-      alarms_{core_} {}
-
-void TruckRun::take(const Sample& sample) {
-  if (!started_) {
-    started_ = true;
-    first_tick_ = sample.tick;
-    first_time_ns_ = sample.time_ns;
-    history_.start(first_tick_);
-  }
-  newest_tick_ = std::max(newest_tick_, sample.tick);
-  clipping_.take(sample);
-  Sample due;
-  if (faults_.take(sample, due)) use(due);
-}
-
-void TruckRun::use(const Sample& sample) {
-  const UpdateResult result = identifier_->update(sample);
-  if (watcher_) watcher_(sample, result);
-  if (result.has_motion) {
-    excerpt_.take(result.motion);
-    phase_->update(result.motion);
-  }
-  methods_->update(result);
-  if (!result.block_closed) return;
-  note_block(result.block);
-  alarms_.take(result.block, sample.tick, *identifier_);
-  if (history_.due(sample.tick)) history_.add(sample.tick, identifier_->level());
-}
-
-void TruckRun::note_block(const BlockReport& block) {
-  ++blocks_[static_cast<std::size_t>(block.status)];
-  const std::string_view why = reason(block.status);
-  if (why.empty()) return;
-  const double start = std::max(0.0, static_cast<double>(block.first_tick - first_tick_));
-  const double end = static_cast<double>(block.first_tick - first_tick_) + block_ticks_;
-  excluded_.add(start / core_.sample_rate_hz, end / core_.sample_rate_hz, why);
-}
-
-double TruckRun::time_s() const noexcept {
-  return static_cast<double>(newest_tick_ - first_tick_) / core_.sample_rate_hz;
-}
-
-const ConvergenceHistory::Row* TruckRun::newest() const noexcept {
-  return history_.rows().empty() ? nullptr : &history_.rows().back();
-}
-
-TruckView TruckRun::view() noexcept {
-  return {identifier_->snapshot(), first_tick_,    newest_tick_,
-          first_time_ns_,          faults_.view(), alarms_.view()};
-}
-
 RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const Config& config,
                         const std::string& source) {
   const double nominal_hz = truck_rate_hz(config.input);
@@ -163,48 +119,115 @@ RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const C
   return result;
 }
 
-void TruckRun::close() {
-  if (closed_) return;
-  closed_ = true;
-  faults_.close();
-  for (Sample due; faults_.drain(due);) use(due);
-  identifier_->finish();
+template <Parts kParts>
+TruckRun<kParts>::TruckRun(const Config& config, const RecordSignals& signals,
+                           const effect::Grids& grids)
+    : config_{config},
+      rate_hz_{truck_rate_hz(config.input)},
+      core_{std::make_unique<Core>(core_config(config, signals), grids)},
+      block_ticks_{Estimator::kBlockS * rate_hz_},
+      history_{static_cast<std::int64_t>(kFirstIntervalSeconds * rate_hz_), 0},
+      excerpt_{rate_hz_} {}
+
+template <Parts kParts>
+void TruckRun<kParts>::note_taken(const Sample& sample) noexcept {
+  if (samples_++ == 0) {
+    first_tick_ = sample.tick;
+    first_time_ns_ = sample.time_ns;
+    history_.start(first_tick_);
+  }
+  newest_tick_ = std::max(newest_tick_, sample.tick);
+  newest_time_ns_ = sample.time_ns;
+  clipping_.take(sample);
 }
 
-RunResult TruckRun::finish(const MeasuredRate& rate, const std::string& source) {
+template <Parts kParts>
+void TruckRun<kParts>::note(const Sample& sample, const UpdateResult& result) {
+  if (watcher_) watcher_(sample, result);
+  if (result.has_motion) excerpt_.take(result.motion);
+  if (!result.block_closed) return;
+  note_block(result.block);
+  if (history_.due(sample.tick)) history_.add(sample.tick, core_->level());
+}
+
+template <Parts kParts>
+void TruckRun<kParts>::note_block(const BlockReport& block) {
+  ++blocks_[static_cast<std::size_t>(block.status)];
+  const std::string_view why = reason(block.status);
+  if (why.empty()) return;
+  const double start = std::max(0.0, static_cast<double>(block.first_tick - first_tick_));
+  const double end = static_cast<double>(block.first_tick - first_tick_) + block_ticks_;
+  excluded_.add(start / rate_hz_, end / rate_hz_, why);
+}
+
+template <Parts kParts>
+double TruckRun<kParts>::time_s() const noexcept {
+  return static_cast<double>(newest_tick_ - first_tick_) / rate_hz_;
+}
+
+template <Parts kParts>
+std::string TruckRun<kParts>::state_text() const {
+  if (history_.rows().empty()) return "";
+  const ConvergenceHistory::Row& row = history_.rows().back();
+  return fmt::format("Fc {:.0f} +- {:.0f} N  k {:.3f} +- {:.3f} MN/m", row.coulomb_n.value,
+                     row.coulomb_n.std, 1e-6 * row.stiffness_npm.value,
+                     1e-6 * row.stiffness_npm.std);
+}
+
+template <Parts kParts>
+TruckView TruckRun<kParts>::view() noexcept {
+  return {core_->snapshot(), first_tick_,     newest_tick_,
+          first_time_ns_,    core_->faults(), core_->alarms()};
+}
+
+template <Parts kParts>
+void TruckRun<kParts>::close() {
+  if (closed_) return;
+  closed_ = true;
+  Observer observer{*this};
+  core_->finish(observer);
+}
+
+template <Parts kParts>
+RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& source) {
   close();
   const TruckView last = view();
-  const TruckRecord record = record_of(last, rate, core_.sample_rate_hz, source);
+  const TruckRecord record = record_of(last, rate, rate_hz_, source);
   if (!last.snapshot.valid) fail_unusable(last.snapshot, source);
   history_.add(newest_tick_,
                {last.snapshot.valid, last.snapshot.coulomb_n, last.snapshot.stiffness_npm});
   RunResult result = describe_truck(record, config_.model);
-  result.counts.emplace_back("blocks_spoilt", blocks(BlockStatus::kExcludedSpoilt));
-  result.latency_s = identifier_->motion_latency_s() + faults_.wait_s();
+  result.counts.emplace_back("blocks_spoilt",
+                             blocks_[static_cast<std::size_t>(BlockStatus::kExcludedSpoilt)]);
+  result.latency_s = core_->estimator().motion_latency_s() + config_.guards.wait_s;
   fill_history(history_.rows(), record, result);
   fill_motion(excerpt_.best(), record, result);
-  fill_phase(*phase_, record, result);
-  fill_densities(methods_->fokker_planck(), record, result);
+  fill_phase(core_->phase(), record, result);
+  fill_densities(core_->density(), record, result);
   if (config_.estimate.methods == "all")
-    fill_methods(methods_->fokker_planck(), core_.moving_mass_kg, last.snapshot.stiffness_npm.value,
+    fill_methods(core_->density(), config_.car.moving_mass_kg, last.snapshot.stiffness_npm.value,
                  record, result);
   result.warnings = clipping_.warnings();
   const auto statistics = std::make_unique<Statistics>();
-  identifier_->export_statistics(*statistics);
-  faults_.finish(record, *statistics, result);
+  core_->statistics(*statistics);
+  circumstances_ = {last.faults, find_parameter_drift(*statistics, Estimator::kBlockS)};
+  describe_faults_of_all(core_->guard(), last.faults, circumstances_.drift, record, rate_hz_,
+                         result);
   describe_alarms(last.alarms, record, result);
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
   return result;
 }
 
-std::string TruckRun::encoded_state() {
+template <Parts kParts>
+std::string TruckRun<kParts>::encoded_state() {
   const auto statistics = std::make_unique<Statistics>();
-  identifier_->export_statistics(*statistics);
+  core_->statistics(*statistics);
   return encode_state(*statistics);
 }
 
-void TruckRun::fail_unusable(const Snapshot& snapshot, const std::string& source) const {
+template <Parts kParts>
+void TruckRun<kParts>::fail_unusable(const Snapshot& snapshot, const std::string& source) const {
   const Counts& counts = snapshot.counts;
   std::string why;
   for (std::size_t i = 0; i < kStatuses; ++i) {
@@ -219,5 +242,8 @@ void TruckRun::fail_unusable(const Snapshot& snapshot, const std::string& source
                   source, format_count(counts.samples), format_duration(time_s()), counts.blocks,
                   counts.blocks_excluded + counts.blocks_still, why.empty() ? "" : ": " + why)};
 }
+
+template class TruckRun<kIdentifyParts>;
+template class TruckRun<kExplainParts>;
 
 }  // namespace dampline::app

@@ -5,26 +5,24 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "app/config/config.hpp"
-#include "app/identify/alarm_watch.hpp"
 #include "app/identify/clipping_watch.hpp"
 #include "app/identify/convergence_history.hpp"
 #include "app/identify/excluded_list.hpp"
-#include "app/identify/fault_watch.hpp"
+#include "app/identify/fault_findings.hpp"
 #include "app/identify/motion_excerpt.hpp"
 #include "app/identify/rate_correction.hpp"
+#include "app/identify/sample_feed.hpp"
 #include "app/run/result.hpp"
-#include "dampline/damping/estimator.hpp"
-#include "dampline/methods.hpp"
-#include "dampline/phase/view.hpp"
+#include "dampline/effect/judgement.hpp"
+#include "dampline/identifier.hpp"
 
 namespace dampline::app {
 
-/// The core's settings from a configuration. Throws UsageError naming the key that a truck record
-/// cannot use.
-[[nodiscard]] EstimatorConfig identifier_config(const Config& config);
+/// The estimator's settings from a configuration. Throws UsageError naming the key that a truck
+/// record cannot use.
+[[nodiscard]] EstimatorConfig estimator_config(const Config& config);
 
 /// What is known at one moment of a run, in the core's own time. Plain: it is handed between
 /// threads.
@@ -45,71 +43,100 @@ struct TruckView {
 /// The faults of a view, in seconds from its beginning by the nominal rate.
 [[nodiscard]] DataFaults faults_of(const TruckView& view, double nominal_hz);
 
-/// One truck record through the core: takes samples, keeps what a report shows beside the result.
-/// Memory does not grow with the record; take() and view() do not allocate. The core sees a sample
-/// when the guards have judged it, [guards] wait_s later.
+/// One truck record through the core's corridor; observes it, and keeps what a report shows beside
+/// the result. Memory does not grow with the record; take() and view() do not allocate.
+template <Parts kParts>
 class TruckRun {
  public:
-  /// `screen`: what is known of the channels; its rate is the configuration's.
-  explicit TruckRun(const Config& config, const ScreenConfig& screen = {});
-  void take(const Sample& sample);
-  /// Sees every sample with what the core made of it.
+  using Core = BasicIdentifier<kParts>;
+
+  /// `grids`: of the effects, where the run has them.
+  explicit TruckRun(const Config& config, const RecordSignals& signals = {},
+                    const effect::Grids& grids = {});
+  void take(const CanFrame& frame) {
+    Observer observer{*this};
+    core_->push(frame, observer);
+  }
+  void take(const Sample& sample) {
+    Observer observer{*this};
+    core_->push(sample, observer);
+  }
+  /// No more frames: what is complete is taken.
+  void flush() {
+    Observer observer{*this};
+    core_->flush(observer);
+  }
+  /// Sees every sample that was judged, with what the core made of it.
   using Watcher = std::function<void(const Sample&, const UpdateResult&)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
-  [[nodiscard]] bool empty() const noexcept { return !started_; }
+  [[nodiscard]] bool empty() const noexcept { return samples_ == 0; }
+  /// Samples so far, before they are judged.
+  [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
   /// Without ending the run.
   [[nodiscard]] TruckView view() noexcept;
-  /// When the first sample was taken, by its own time. Precondition: not empty().
+  /// When the first and the newest sample were taken, by their own time. Precondition: not empty().
   [[nodiscard]] std::int64_t first_time_ns() const noexcept { return first_time_ns_; }
-  /// Faults of the data, so far.
-  [[nodiscard]] std::span<const Fault> fault_kinds() const noexcept { return faults_.found(); }
-  /// White noise of each channel, rms, what its resolution makes included; 0: not known yet.
-  [[nodiscard]] std::array<double, kChannels> noise_mps2() const noexcept {
-    return faults_.noise_mps2();
-  }
+  [[nodiscard]] std::int64_t newest_time_ns() const noexcept { return newest_time_ns_; }
+  [[nodiscard]] const IdentifierConfig& config() const noexcept { return core_->config(); }
+  [[nodiscard]] const Core& core() const noexcept { return *core_; }
+  [[nodiscard]] Core& core() noexcept { return *core_; }
   /// No more samples: the core gets what still waits for the guards. Done once.
   void close();
   /// close(), and what the record says. Precondition: not empty(). Throws RunError naming `source`
   /// when nothing could be identified, with the reasons, or when the measured rate is not the
   /// nominal one.
   [[nodiscard]] RunResult finish(const MeasuredRate& rate, const std::string& source);
-
+  /// After finish(): what an explanation must know beside the sums.
+  [[nodiscard]] const effect::Circumstances& circumstances() const noexcept {
+    return circumstances_;
+  }
   /// The newest sample, in seconds from the first; by the nominal rate.
   [[nodiscard]] double time_s() const noexcept;
-  /// For the progress line: the newest row of the history, or null.
-  [[nodiscard]] const ConvergenceHistory::Row* newest() const noexcept;
+  /// What became of the frames.
+  [[nodiscard]] FrameSummary frames() const noexcept {
+    return {core_->assembler().counts(), first_time_ns_};
+  }
+  /// For the progress line: level and stiffness as the history has them last.
+  [[nodiscard]] std::string state_text() const;
   /// The sufficient statistics as state.dls holds them. Call after finish().
   [[nodiscard]] std::string encoded_state();
 
  private:
   static constexpr std::size_t kStatuses = 8;
+  struct Observer {
+    TruckRun& run;
+    void taken(const Sample& sample) noexcept { run.note_taken(sample); }
+    void judged(const Sample& sample, const UpdateResult& result) { run.note(sample, result); }
+  };
 
-  void use(const Sample& sample);
+  void note_taken(const Sample& sample) noexcept;
+  void note(const Sample& sample, const UpdateResult& result);
   void note_block(const BlockReport& block);
-  [[nodiscard]] std::uint64_t blocks(BlockStatus status) const noexcept {
-    return blocks_[static_cast<std::size_t>(status)];
-  }
   [[noreturn]] void fail_unusable(const Snapshot& snapshot, const std::string& source) const;
 
-  EstimatorConfig core_;
   Config config_;
-  std::unique_ptr<Estimator> identifier_;
-  std::unique_ptr<Methods> methods_;
-  std::unique_ptr<PhaseView> phase_;
+  double rate_hz_;
+  std::unique_ptr<Core> core_;
   double block_ticks_;
-  bool started_{false};
   bool closed_{false};
+  std::uint64_t samples_{0};
   std::int64_t first_tick_{0};
   std::int64_t first_time_ns_{0};
   std::int64_t newest_tick_{0};
+  std::int64_t newest_time_ns_{0};
   std::array<std::uint64_t, kStatuses> blocks_{};
   ConvergenceHistory history_;
   MotionExcerpt excerpt_;
   ExcludedList excluded_;
   ClippingWatch clipping_;
-  FaultWatch faults_;
-  AlarmWatch alarms_;
+  effect::Circumstances circumstances_;
   Watcher watcher_;
 };
+
+extern template class TruckRun<kIdentifyParts>;
+extern template class TruckRun<kExplainParts>;
+
+/// With the sums that an explanation needs.
+using ExplainRun = TruckRun<kExplainParts>;
 
 }  // namespace dampline::app

@@ -12,13 +12,12 @@ constexpr std::chrono::milliseconds kFramePatience{100};
 
 }  // namespace
 
-Acquisition::Acquisition(hal::FrameSource& source, const hal::Clock& clock, TruckRun& run,
+Acquisition::Acquisition(hal::FrameSource& source, const hal::Clock& clock, ExplainRun& run,
                          const AcquisitionConfig& config)
     : source_{source},
       clock_{clock},
       run_{run},
-      assembler_{config.assembler},
-      period_ns_{std::llround(1e9 / config.assembler.sample_rate_hz)},
+      period_ns_{std::llround(1e9 / config.sample_rate_hz)},
       publish_interval_ns_{config.publish_interval_ns},
       read_interval_ns_{config.read_interval_ns},
       next_publish_ns_{now_ns() + config.publish_interval_ns},
@@ -71,8 +70,8 @@ std::int64_t Acquisition::take(std::size_t count) noexcept {
     item_.is_event = false;
     item_.frame = frames_[i];
     items_.push(item_);
-    assembler_.push(frames_[i]);
-    take_samples();
+    run_.take(frames_[i]);
+    note_samples();
   }
   const std::int64_t now = now_ns();
   for (std::size_t i = 0; i < count; ++i) {
@@ -83,15 +82,14 @@ std::int64_t Acquisition::take(std::size_t count) noexcept {
   return now;
 }
 
-void Acquisition::take_samples() noexcept {
-  Sample sample;
-  while (assembler_.pop(sample)) {
-    run_.take(sample);
-    newest_sample_ns_ = sample.time_ns;
-    if (taken_++ == 0) first_sample_ns_ = clock_.monotonic_ns();
-    if (taken_ == kWarmUpSamples) warm_ = page_faults_of_thread();
-    samples_.store(taken_, std::memory_order_release);
-  }
+void Acquisition::note_samples() noexcept {
+  const std::uint64_t now = run_.samples();
+  if (now == taken_) return;
+  newest_sample_ns_ = run_.newest_time_ns();
+  if (taken_ == 0) first_sample_ns_ = clock_.monotonic_ns();
+  if (taken_ < kWarmUpSamples && now >= kWarmUpSamples) warm_ = page_faults_of_thread();
+  taken_ = now;
+  samples_.store(taken_, std::memory_order_release);
 }
 
 void Acquisition::take_events() noexcept {
@@ -126,8 +124,8 @@ void Acquisition::publish_when_due(std::int64_t now_ns) noexcept {
 void Acquisition::fill(LiveStatus& status) noexcept {
   status.any_sample = !run_.empty();
   if (status.any_sample) status.view = run_.view();
-  status.rate = assembler_.measured_rate();
-  status.assembler = assembler_.counts();
+  status.rate = run_.core().assembler().measured_rate();
+  status.assembler = run_.core().assembler().counts();
   status.source = source_.health();
   status.lateness = lateness_;
   status.cycle_slips = slips_;
@@ -142,8 +140,8 @@ void Acquisition::note_faults() noexcept {
 }
 
 void Acquisition::finish() noexcept {
-  assembler_.flush();
-  take_samples();
+  run_.flush();
+  note_samples();
 }
 
 LiveStatus Acquisition::final_status() noexcept {

@@ -10,7 +10,6 @@
 #include "app/live/latest.hpp"
 #include "app/live/realtime.hpp"
 #include "app/live/record_queue.hpp"
-#include "dampline/sample/assembler.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_source.hpp"
 
@@ -30,7 +29,7 @@ struct LiveStatus {
 };
 
 struct AcquisitionConfig {
-  AssemblerConfig assembler;
+  double sample_rate_hz{300.0};  ///< nominal
   std::int64_t publish_interval_ns{10'000'000'000};
   /// 0: frames are read as they arrive. Else so often: fewer wake-ups, later results.
   std::int64_t read_interval_ns{0};
@@ -45,7 +44,7 @@ class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds 
   static constexpr std::int64_t kSignalLostNs = 1'000'000'000;
   static constexpr std::uint64_t kWarmUpSamples = 3000;
 
-  Acquisition(hal::FrameSource& source, const hal::Clock& clock, TruckRun& run,
+  Acquisition(hal::FrameSource& source, const hal::Clock& clock, ExplainRun& run,
               const AcquisitionConfig& config);
 
   /// Until stop() or the end of the source; what the source still holds then is taken.
@@ -67,7 +66,7 @@ class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds 
   /// For the publishing thread.
   [[nodiscard]] Latest<LiveStatus>& status() noexcept { return status_; }
 
-  /// After the thread has ended: takes what the assembler still holds and tells the end.
+  /// After the thread has ended: takes what the corridor's assembler still holds.
   void finish() noexcept;
   [[nodiscard]] LiveStatus final_status() noexcept;
 
@@ -80,7 +79,7 @@ class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds 
   /// Returns the time when their results were there.
   std::int64_t take(std::size_t count) noexcept;
   void rest() noexcept;
-  void take_samples() noexcept;
+  void note_samples() noexcept;
   void take_events() noexcept;
   void watch_signal(std::int64_t now_ns) noexcept;
   void note_faults() noexcept;
@@ -90,8 +89,7 @@ class Acquisition {  // NOLINT(clang-analyzer-optin.performance.Padding): holds 
 
   hal::FrameSource& source_;
   const hal::Clock& clock_;
-  TruckRun& run_;
-  SampleAssembler assembler_;
+  ExplainRun& run_;
   std::int64_t period_ns_;
   std::int64_t publish_interval_ns_;
   std::int64_t read_interval_ns_;

@@ -61,7 +61,7 @@ std::unique_ptr<hal::RecordSink> open_sink(const BlackboxSettings& settings,
 
 Identified identify_live(const Config& config, const std::string& interface,
                          const LiveOptions& options, const LivePlace& place) {
-  static_cast<void>(identifier_config(config));  // wrong settings before a wrong source
+  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
   const drivers::SystemClock clock;
   const hal::RunTime run_time = hal::RunTime::start(clock);
   const AssemblerConfig assembler = can_channels(config);

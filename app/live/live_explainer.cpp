@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "app/explain/explanation_json.hpp"
-#include "app/explain/fault_veto.hpp"
 #include "app/explain/truck_verdict.hpp"
 
 namespace dampline::app {
@@ -19,30 +18,30 @@ constexpr int kNice = 10;  // the acquisition and the writer come first
 
 }  // namespace
 
-LiveExplainer::LiveExplainer(const Config& config, const EstimatorConfig& core, TruckRun& run)
+LiveExplainer::LiveExplainer(const Config& config, ExplainRun& run)
     : whole_{config},
       config_{explainer_config(config)},
       run_{run},
-      every_ticks_{std::llround(kEveryS * core.sample_rate_hz)},
-      diagnosis_{std::make_unique<effect::Diagnosis>(core)},
+      every_ticks_{std::llround(kEveryS * run.config().estimator.sample_rate_hz)},
       copy_{std::make_unique<effect::StoreCopy>()},
       explainer_{std::make_unique<effect::Explainer>()} {
-  run.watch([this](const Sample& sample, const UpdateResult& result) { take(sample, result); });
+  run.watch([this](const Sample& sample, const UpdateResult&) { take(sample); });
 }
 
 LiveExplainer::~LiveExplainer() { stop(); }
 
-void LiveExplainer::take(const Sample& sample, const UpdateResult& result) noexcept {
-  diagnosis_->update(sample, result);
+void LiveExplainer::take(const Sample& sample) noexcept {
+  const effect::Diagnosis& sums = run_.core().effects();
   const Turn turn = turn_.load(std::memory_order_acquire);
   if (turn == Turn::kWait && sample.tick >= next_tick_) {
     next_tick_ = sample.tick + every_ticks_;
     copy_->start();
     turn_.store(Turn::kCopy, std::memory_order_relaxed);
-  } else if (turn == Turn::kCopy && copy_->step(diagnosis_->store())) {
-    impulses_ = diagnosis_->impulses();
-    grids_ = diagnosis_->grids();
-    forbidden_ = faults_forbid_naming(run_.fault_kinds());
+  } else if (turn == Turn::kCopy && copy_->step(sums.store())) {
+    impulses_ = sums.impulses();
+    grids_ = sums.grids();
+    circumstances_.faults = run_.core().faults();
+    circumstances_.faults.repairs = {};  // how much is left out is not known yet
     turn_.store(Turn::kJudge, std::memory_order_release);
   }
 }
@@ -69,10 +68,8 @@ void LiveExplainer::run() {
 
 void LiveExplainer::judge() {
   Explained out;
-  out.explanation = explainer_->explain(copy_->store(), impulses_, grids_, config_);
+  effect::judge(copy_->store(), impulses_, grids_, config_, circumstances_, *explainer_, out);
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return;
-  out.withheld = forbidden_;
-  if (out.withheld) withhold_effects(out.explanation);
   std::string text = to_json(out);
   const std::lock_guard<std::mutex> lock{mutex_};
   newest_ = std::move(text);
@@ -84,10 +81,10 @@ std::string LiveExplainer::newest() const {
 }
 
 std::string LiveExplainer::conclude(const RunResult& identified) {
-  diagnosis_->finish();
   Explained out;
   out.identified = identified;
-  return judge_sums(whole_, *diagnosis_, *explainer_, out) ? to_json(out) : "";
+  out.circumstances = run_.circumstances();
+  return judge_sums(whole_, run_.core().effects(), *explainer_, out) ? to_json(out) : "";
 }
 
 }  // namespace dampline::app

@@ -9,18 +9,17 @@
 
 #include "app/config/config.hpp"
 #include "app/identify/truck_run.hpp"
-#include "dampline/effect/diagnosis.hpp"
-#include "dampline/effect/explainer.hpp"
 #include "dampline/effect/gram_store.hpp"
+#include "dampline/effect/judgement.hpp"
 
 namespace dampline::app {
 
-/// The explanation of a live run: sums beside the estimate in the acquisition's thread, the
-/// judgement of the candidates in a thread of its own, which may take its time.
+/// The explanation of a live run: a copy of its sums from the acquisition's thread, the judgement
+/// of the candidates in a thread of its own, which may take its time.
 class LiveExplainer {
  public:
   /// Watches `run` from now on, which outlives it. Nothing is allocated per sample.
-  LiveExplainer(const Config& config, const EstimatorConfig& core, TruckRun& run);
+  LiveExplainer(const Config& config, ExplainRun& run);
   LiveExplainer(const LiveExplainer&) = delete;
   LiveExplainer& operator=(const LiveExplainer&) = delete;
   ~LiveExplainer();
@@ -38,19 +37,18 @@ class LiveExplainer {
   /// Who works: the acquisition waits or copies, or the judge has the copy.
   enum class Turn : std::uint8_t { kWait, kCopy, kJudge };
 
-  void take(const Sample& sample, const UpdateResult& result) noexcept;
+  void take(const Sample& sample) noexcept;
   void judge();
   void run();
 
   Config whole_;
   effect::ExplainerConfig config_;
-  const TruckRun& run_;
+  ExplainRun& run_;
   std::int64_t every_ticks_;
-  std::unique_ptr<effect::Diagnosis> diagnosis_;
   std::unique_ptr<effect::StoreCopy> copy_;
   effect::ImpulseMeter impulses_;
   effect::Grids grids_;
-  bool forbidden_{false};
+  effect::Circumstances circumstances_;  // of the copy
   std::int64_t next_tick_{0};
   std::atomic<Turn> turn_{Turn::kWait};
 

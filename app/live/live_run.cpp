@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds kLampTurn{60};  // often enough for the lamp
 
 AcquisitionConfig acquisition_config(const AssemblerConfig& assembler, const LiveOptions& options) {
   AcquisitionConfig config;
-  config.assembler = assembler;
+  config.sample_rate_hz = assembler.sample_rate_hz;
   config.publish_interval_ns = std::llround(1e9 * options.publish_every_s);
   config.read_interval_ns = std::llround(1e9 * options.read_every_s);
   return config;
@@ -33,8 +33,8 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       parts_{parts},
       options_{options},
       outlets_{std::move(outlets)},
-      truck_{config, screen_of(assembler.channels)},
-      explainer_{config, identifier_config(config), truck_},
+      truck_{config, {assembler.channels, screen_of(assembler.channels)}},
+      explainer_{config, truck_},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},
       recorder_{*parts.sink, *parts.clock, acquisition_->items()},

@@ -70,7 +70,7 @@ class LiveRun {
   LiveParts parts_;
   LiveOptions options_;
   LiveOutlets outlets_;
-  TruckRun truck_;
+  ExplainRun truck_;
   LiveExplainer explainer_;
   std::unique_ptr<Acquisition> acquisition_;
   Recorder recorder_;

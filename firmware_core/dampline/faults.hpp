@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace dampline {
 
@@ -76,5 +77,56 @@ struct Fault {
 [[nodiscard]] constexpr FaultChannel channel_of(std::size_t channel) noexcept {
   return static_cast<FaultChannel>(channel);
 }
+
+/// What was found and belongs to the car's ride, not to the faults. Monotone.
+struct GuardInputs {
+  std::array<std::uint64_t, 3> impacts{};  ///< by channel: rail joints, wheel flats
+  std::uint64_t speed_changes{0};
+};
+
+/// What was done about faults that passed. Monotone.
+struct RepairCounts {
+  std::uint64_t replaced{0};  ///< values of a channel, by what their neighbours say
+  std::uint64_t spoilt{0};    ///< samples that were left out
+};
+
+/// The faults at one moment, times in seconds by the nominal rate. Plain: it can be handed between
+/// threads; some 5 KiB.
+struct FaultView {
+  std::array<Fault, kFaultKinds * kFaultChannels> faults{};
+  std::size_t count{0};
+  GuardInputs inputs;
+  RepairCounts repairs;
+  [[nodiscard]] std::span<const Fault> list() const noexcept { return {faults.data(), count}; }
+};
+
+/// What may change while the record is made.
+enum class DriftingParameter : std::uint8_t { kFriction, kStiffness, kMass };
+
+/// As parameters.json calls it.
+[[nodiscard]] constexpr const char* name_of(DriftingParameter parameter) noexcept {
+  switch (parameter) {
+    case DriftingParameter::kFriction:
+      return "coulomb";
+    case DriftingParameter::kStiffness:
+      return "stiffness";
+    case DriftingParameter::kMass:
+      break;
+  }
+  return "moving_mass";
+}
+
+/// The newest alarms: a parameter is not what it was when the watch began. Plain.
+struct AlarmView {
+  static constexpr std::size_t kMost = 8;
+  struct Alarm {
+    DriftingParameter parameter{};
+    double change{0.0};          ///< relative: -0.3 means 30 % less than before
+    std::int64_t since_tick{0};  ///< the first block that had changed
+    std::int64_t tick{0};        ///< when it was noticed
+  };
+  std::array<Alarm, kMost> alarms{};  ///< ring: alarm i lies at i % kMost
+  std::uint64_t count{0};             ///< ever
+};
 
 }  // namespace dampline

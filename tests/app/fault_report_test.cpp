@@ -23,7 +23,7 @@ RunResult identify(const sim::RecordFaultConfig& faults) {
   const sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 11);
   Config config;
   config.car.moving_mass_kg = simulation.truck.moving_mass_kg;
-  TruckRun run{config};
+  TruckRun<kIdentifyParts> run{config};
   sim::FaultyRecord record{simulation, faults};
   for (int i = 0; i < 60 * sim::kSampleRateHz; ++i) run.take(sim::to_sample(record.next()));
   return run.finish({}, "simulated");
@@ -110,7 +110,7 @@ TEST(FaultReport, TakesWhatIsDeclaredFromTheConfiguration) {
     config.car.wheelbase_m = simulation.truck.wheelbase_m;
     config.input.speed_mps = speed_mps;
     config.input.leading = leading;
-    TruckRun run{config};
+    TruckRun<kIdentifyParts> run{config};
     sim::Simulation record{simulation};
     for (int i = 0; i < 100 * sim::kSampleRateHz; ++i) run.take(sim::to_sample(record.next()));
     std::vector<std::string> out;

@@ -22,7 +22,7 @@ constexpr double kLevel_n = 8356.0;
 template <class Change>
 RunResult identify(double seconds, const Config& config, double rate_hz, Change change) {
   sim::Simulation simulation{sim::SimulationConfig{}};
-  TruckRun run{config};
+  TruckRun<kIdentifyParts> run{config};
   RateMeter meter{config.input.sample_rate_hz};
   for (int i = 0; i < static_cast<int>(300.0 * seconds); ++i) {
     Sample sample = sim::to_sample(simulation.next());
@@ -133,7 +133,7 @@ TEST(TruckRun, RefusesARateThatIsNotTheNominalOne) {
 TEST(TruckRun, RefusesEffectsThatItCannotIdentify) {
   Config config;
   config.model.base = {"coulomb", "backlash"};
-  EXPECT_THROW(TruckRun{config}, UsageError);
+  EXPECT_THROW(TruckRun<kIdentifyParts>{config}, UsageError);
 }
 
 TEST(ConvergenceHistory, StaysBoundedAndCoversTheWholeRecord) {

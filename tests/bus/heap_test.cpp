@@ -30,13 +30,12 @@ TEST(TimeTravelHeap, AHundredThousandSamplesAllocateNothing) {
   const drivers::SystemClock clock;
   const app::Config config;
   app::AcquisitionConfig settings;
-  settings.assembler = app::can_channels(config);
   settings.publish_interval_ns = 1'000'000'000;
   drivers::SocketCanConfig can{.interface = bus.name()};
   can.run_time = hal::RunTime::start(clock);
   const auto source = drivers::SocketCanSource::open(can, clock);
   ASSERT_TRUE(source.ok()) << source.error_text();
-  app::TruckRun truck{config};
+  app::ExplainRun truck{config, {app::can_channels(config).channels, {}}};
   app::Acquisition acquisition{*source.value(), clock, truck, settings};
   Child simulate{simulate_command(bus.name(), 345.0, 10), folder.path()};
   const auto run_to = [&](std::uint64_t samples) {

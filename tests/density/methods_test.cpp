@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/methods.hpp"
-
 #include <gtest/gtest.h>
 
-#include <iostream>
 #include <memory>
 
+#include "dampline/identifier.hpp"
 #include "sim_hw/simulation.hpp"
 #include "tests/density/white_run.hpp"
 
@@ -15,13 +13,13 @@ namespace {
 FokkerPlanckEstimates track_run(const sim::SimulationConfig& config, double length_s) {
   const EstimatorConfig identifier_config{.moving_mass_kg = config.truck.moving_mass_kg};
   const auto identifier = std::make_unique<Estimator>(identifier_config);
-  const auto methods = std::make_unique<Methods>(identifier_config);
+  const auto density = std::make_unique<FokkerPlanck>(density_config(identifier_config));
   sim::Simulation simulation{config};
   for (int i = 0; i < static_cast<int>(length_s * sim::kSampleRateHz); ++i) {
-    methods->update(identifier->update(sim::to_sample(simulation.next())));
+    const UpdateResult result = identifier->update(sim::to_sample(simulation.next()));
+    if (result.has_motion) density->update(result.motion);
   }
-  return methods->fokker_planck().estimates(config.truck.moving_mass_kg,
-                                            config.truck.stiffness_npm);
+  return density->estimates(config.truck.moving_mass_kg, config.truck.stiffness_npm);
 }
 
 struct Ride {
@@ -55,30 +53,30 @@ INSTANTIATE_TEST_SUITE_P(Conditions, OnTrack,
                                          Ride{sim::Load::kEmpty, 60.0, sim::kTrackAmplitudeHigh},
                                          Ride{sim::Load::kEmpty, 80.0, sim::kTrackAmplitudeLow}));
 
-TEST(Methods, LeavesStandstillOut) {
+TEST(Densities, LeavesStandstillOut) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 302);
   config.speed.standstills[0] = {70.0, 100.0};
   const EstimatorConfig identifier_config{};
   const auto identifier = std::make_unique<Estimator>(identifier_config);
-  const auto methods = std::make_unique<Methods>(identifier_config);
+  const auto density = std::make_unique<FokkerPlanck>(density_config(identifier_config));
   sim::Simulation simulation{config};
   for (int i = 0; i < 120 * sim::kSampleRateHz; ++i) {
-    methods->update(identifier->update(sim::to_sample(simulation.next())));
+    const UpdateResult result = identifier->update(sim::to_sample(simulation.next()));
+    if (result.has_motion) density->update(result.motion);
   }
-  EXPECT_GT(methods->fokker_planck().still(), 29U * 300U);
-  EXPECT_LT(methods->fokker_planck().velocities().density(kVelocityBins / 2), 200.0);
+  EXPECT_GT(density->still(), 29U * 300U);
+  EXPECT_LT(density->velocities().density(kVelocityBins / 2), 200.0);
 }
 
-TEST(Methods, TakesMemoryAndNodesFromTheIdentifier) {
+TEST(Densities, TakesMemoryAndNodesFromTheIdentifier) {
   EstimatorConfig config{.memory = Memory::kWindow, .memory_s = 120.0};
   config.anti_alias.corner_hz = 50.0;
   config.curve_nodes_mps[0] = 2.0e-3;
-  const FokkerPlanckConfig out = Methods::fokker_planck_config(config);
+  const FokkerPlanckConfig out = density_config(config);
   EXPECT_EQ(out.memory_s, 60.0);
   EXPECT_EQ(out.anti_alias_corner_hz, 50.0);
   EXPECT_EQ(out.curve_nodes_mps[0], 2.0e-3);
   EXPECT_TRUE(FokkerPlanck::check(out).ok());
-  std::cout << "sizeof(Methods) = " << sizeof(Methods) << " bytes\n";
 }
 
 }  // namespace

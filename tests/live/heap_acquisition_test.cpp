@@ -51,10 +51,9 @@ class Prepared final : public hal::FrameSource {
 TEST(AcquisitionHeap, IsNotTouchedByAHundredThousandSamples) {
   Prepared source;
   const drivers::SystemClock clock;
-  TruckRun run{{}};
-  LiveExplainer explainer{{}, identifier_config({}), run};
+  ExplainRun run{{}, {can_channels({}).channels, {}}};
+  LiveExplainer explainer{{}, run};
   AcquisitionConfig config;
-  config.assembler = can_channels({});
   config.publish_interval_ns = 2'000'000;  // many snapshots
   const auto acquisition = std::make_unique<Acquisition>(source, clock, run, config);
   RecordItem item;

@@ -19,8 +19,8 @@ TEST(LiveExplainer, NamesAnEffectBesideTheRunningEstimate) {
   sim::Simulation simulation{config};
   Config settings;
   settings.car.moving_mass_kg = config.truck.moving_mass_kg;
-  TruckRun run{settings};
-  LiveExplainer explainer{settings, identifier_config(settings), run};
+  ExplainRun run{settings};
+  LiveExplainer explainer{settings, run};
   explainer.start();
   EXPECT_EQ(explainer.newest(), "");
   for (int n = 0; n < 120 * 300; ++n) run.take(sim::to_sample(simulation.next()));

@@ -106,19 +106,12 @@ class LiveRunTest : public ::testing::Test {
 /// The same frames without threads.
 std::string state_of(hal::FrameSource& source) {
   const AssemblerConfig config = can_channels({});
-  TruckRun truck{{}, screen_of(config.channels)};
-  const auto assembler = std::make_unique<SampleAssembler>(config);
-  Sample sample;
+  TruckRun<kIdentifyParts> truck{{}, {config.channels, screen_of(config.channels)}};
   std::array<CanFrame, 7> frames;
-  for (auto count = source.read(frames); count.ok(); count = source.read(frames)) {
-    for (std::size_t i = 0; i < count.value(); ++i) {
-      assembler->push(frames[i]);
-      while (assembler->pop(sample)) truck.take(sample);
-    }
-  }
-  assembler->flush();
-  while (assembler->pop(sample)) truck.take(sample);
-  static_cast<void>(truck.finish(assembler->measured_rate(), "reference"));
+  for (auto count = source.read(frames); count.ok(); count = source.read(frames))
+    for (std::size_t i = 0; i < count.value(); ++i) truck.take(frames[i]);
+  truck.flush();
+  static_cast<void>(truck.finish(truck.core().assembler().measured_rate(), "reference"));
   return truck.encoded_state();
 }
 

@@ -9,7 +9,7 @@
 namespace dampline {
 namespace {
 
-using Fault = BlockLedger::Fault;
+using Cause = BlockLedger::Fault;
 
 constexpr double kMinRateHz = 150.0;
 constexpr double kStillMps = 2.0e-3;
@@ -119,24 +119,24 @@ void Estimator::count_fault(Verdict verdict, std::int64_t block) noexcept {
     case Verdict::kGood:
       return;
     case Verdict::kSpoilt:
-      return ledger_.mark(block, Fault::kSpoilt);
+      return ledger_.mark(block, Cause::kSpoilt);
     case Verdict::kStuck:
       ++counts_.stuck;
-      return ledger_.mark(block, Fault::kStuck);
+      return ledger_.mark(block, Cause::kStuck);
     case Verdict::kSaturated:
       ++counts_.saturated;
-      return ledger_.mark(block, Fault::kSaturated);
+      return ledger_.mark(block, Cause::kSaturated);
     case Verdict::kNotFinite:
       ++counts_.not_finite;
-      return ledger_.mark(block, Fault::kNotFinite);
+      return ledger_.mark(block, Cause::kNotFinite);
   }
 }
 
 void Estimator::take_gap(std::int64_t tick) noexcept {
   ++counts_.gaps;
   counts_.lost += static_cast<std::uint64_t>(tick - last_tick_ - 1);
-  ledger_.mark(block_of(last_tick_ + 1), Fault::kGap);
-  ledger_.mark(block_of(tick - 1), Fault::kGap);
+  ledger_.mark(block_of(last_tick_ + 1), Cause::kGap);
+  ledger_.mark(block_of(tick - 1), Cause::kGap);
   in_stretch_ = false;
   // Nothing reaches across a gap: what lies before it gets no more rows, what was skipped has none.
   close_blocks_before(std::min(block_of(last_tick_ + 1) + 1, block_of(tick)));

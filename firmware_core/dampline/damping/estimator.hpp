@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "dampline/basis/columns.hpp"
+#include "dampline/config.hpp"
 #include "dampline/estimate/block_ledger.hpp"
 #include "dampline/estimate/block_store.hpp"
 #include "dampline/estimate/statistics.hpp"
@@ -18,18 +19,6 @@
 #include "dampline/wavelet/row_builder.hpp"
 
 namespace dampline {
-
-struct EstimatorConfig {
-  double sample_rate_hz{300.0};    ///< 150...400
-  double moving_mass_kg{37200.0};  ///< truck frame and its share of the body; scales every force
-  /// 0.7 or 1.0: what is slower is not velocity but drift. 0: chosen once, from the sensors' noise.
-  double velocity_corner_hz{0.0};
-  std::array<double, kCurveSegments> curve_nodes_mps{kDefaultCurveNodesMps};
-  AntiAliasConfig anti_alias{};  ///< of the sensors
-  ScreenConfig screen{};         ///< its rate is taken from sample_rate_hz
-  Memory memory{Memory::kInfinite};
-  double memory_s{0.0};  ///< length of the window, or time constant
-};
 
 struct UpdateResult {
   bool has_motion{false};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "dampline/faults.hpp"
 #include "dampline/motion/anti_alias.hpp"
 #include "dampline/sample.hpp"
 
@@ -20,12 +21,6 @@ struct GuardConfig {
   double speed_mps{0.0};  ///< from something else than these sensors; 0: unknown
   Leading leading{Leading::kUnknown};
   AntiAliasConfig anti_alias{};
-};
-
-/// What was found and belongs to the car's ride, not to the faults. Monotone.
-struct GuardInputs {
-  std::array<std::uint64_t, kChannels> impacts{};  ///< rail joints, wheel flats
-  std::uint64_t speed_changes{0};
 };
 
 }  // namespace dampline

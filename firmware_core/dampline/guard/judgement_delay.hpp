@@ -18,10 +18,6 @@ namespace dampline {
 class JudgementDelay {
  public:
   static constexpr std::size_t kMost = 10000;  ///< samples that can wait
-  struct Counts {
-    std::uint64_t replaced{0};  ///< values of a channel
-    std::uint64_t spoilt{0};    ///< samples
-  };
 
   /// `samples`: how many wait, at most kMost; 0 passes all on as they are.
   explicit JudgementDelay(std::size_t samples) noexcept
@@ -31,7 +27,7 @@ class JudgementDelay {
   bool push(const Sample& sample, Guard& guard, Sample& out) noexcept;
   /// End of the record: the samples that still wait, one per call.
   bool drain(Guard& guard, Sample& out) noexcept;
-  [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const RepairCounts& counts() const noexcept { return counts_; }
 
  private:
   static constexpr std::size_t kRing = kMost + 4;
@@ -55,7 +51,7 @@ class JudgementDelay {
   std::size_t newest_{0};  // slot of the newest
   std::size_t count_{0};   // that wait
   std::size_t gone_{0};    // that came out and are still known, at most two
-  Counts counts_{};
+  RepairCounts counts_{};
 };
 
 }  // namespace dampline

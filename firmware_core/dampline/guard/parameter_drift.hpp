@@ -7,23 +7,10 @@
 
 #include "dampline/estimate/law_profile.hpp"
 #include "dampline/estimate/statistics.hpp"
+#include "dampline/faults.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {
-
-enum class DriftingParameter : std::uint8_t { kFriction, kStiffness, kMass };
-
-[[nodiscard]] constexpr const char* name_of(DriftingParameter parameter) noexcept {
-  switch (parameter) {
-    case DriftingParameter::kFriction:
-      return "coulomb";
-    case DriftingParameter::kStiffness:
-      return "stiffness";
-    case DriftingParameter::kMass:
-      break;
-  }
-  return "moving_mass";
-}
 
 /// Whether a parameter changed while the record was made (`time_drift`), which, when, how much.
 struct ParameterDrift {

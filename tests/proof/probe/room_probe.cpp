@@ -10,7 +10,7 @@
 
 #include "dampline/effect/diagnosis.hpp"
 #include "dampline/guard/guard.hpp"
-#include "dampline/methods.hpp"
+#include "dampline/identifier.hpp"
 #include "dampline/phase/view.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "tests/proof/probe/rooms.hpp"
@@ -114,29 +114,15 @@ struct IdentifierRoom final : Room {
   }
 };
 
-enum class Parts : std::uint8_t { kEstimate, kIdentify, kExplain };
-
-/// Frames to the estimate and the densities; with kIdentify the guards and phase planes that run
-/// beside them in the program, with kExplain the sums of every candidate effect too.
+/// The corridor: frames to the estimate and the densities; as `identify` runs it; as `explain`
+/// does.
+inline constexpr Parts kChainParts{.guards = false, .phase = false, .alarms = false};
 template <Parts kParts>
 struct Chain final : Room {
-  Decode decode{};
-  Estimator identifier{identifier_config()};
-  Methods methods{identifier_config()};
-  GuardRoom guard{};
-  Phase phase{};
-  effect::Diagnosis diagnosis{identifier_config()};
+  BasicIdentifier<kParts> identifier{
+      {.estimator = identifier_config(), .signals = assembler_config().channels}};
   void take(const Instant& instant) override {
-    for (const CanFrame& frame : instant.frames) decode.assembler.push(frame);
-    while (decode.next()) through(decode.sample);
-  }
-  void through(const Sample& sample) noexcept {
-    if constexpr (kParts != Parts::kEstimate) guard.guard.update(sample);
-    const UpdateResult result = identifier.update(sample);
-    methods.update(result);
-    if constexpr (kParts != Parts::kEstimate)
-      if (result.has_motion) phase.view.update(result.motion);
-    if constexpr (kParts == Parts::kExplain) diagnosis.update(sample, result);
+    for (const CanFrame& frame : instant.frames) identifier.push(frame);
   }
 };
 
@@ -160,9 +146,9 @@ std::unique_ptr<Room> open(const char* name) {
   if (is("guard")) return std::make_unique<GuardRoom>();
   if (is("effect")) return std::make_unique<Effect>();
   if (is("identifier")) return std::make_unique<IdentifierRoom>();
-  if (is("chain")) return std::make_unique<Chain<Parts::kEstimate>>();
-  if (is("identify")) return std::make_unique<Chain<Parts::kIdentify>>();
-  if (is("explain")) return std::make_unique<Chain<Parts::kExplain>>();
+  if (is("chain")) return std::make_unique<Chain<kChainParts>>();
+  if (is("identify")) return std::make_unique<Chain<kIdentifyParts>>();
+  if (is("explain")) return std::make_unique<Chain<kExplainParts>>();
   if (is("answer")) return std::make_unique<Answer>();
   return nullptr;
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "app/explain/fault_veto.hpp"
+#include "app/explain/truck_verdict.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "app/explain/explanation_json.hpp"
-#include "app/explain/truck_verdict.hpp"
 
 namespace dampline::app {
 namespace {
@@ -30,57 +29,7 @@ effect::Explanation explained_by_one_effect(double gain) {
   return explanation;
 }
 
-TEST(FaultVeto, IsForFaultsThatLookLikeEffects) {
-  EXPECT_TRUE(forbids_naming(with("clock_drift", "frame")));
-  EXPECT_TRUE(forbids_naming(with("lost_samples", "wheelset1")));
-  EXPECT_FALSE(forbids_naming(with("lost_samples", "all")));
-  EXPECT_FALSE(forbids_naming(with("stuck_channel", "frame")));
-  EXPECT_FALSE(forbids_naming({}));
-}
-
-TEST(FaultVeto, LetsTheDiagnosisGoOnWhereAFaultThatPassesWasLeftOut) {
-  for (const char* name : {"spikes", "dc_jump", "noise_burst"}) {
-    DataFaults faults = with(name, "frame");
-    EXPECT_TRUE(forbids_naming(faults)) << name;
-    faults.samples_spoilt = 600;
-    EXPECT_FALSE(forbids_naming(faults)) << name;
-  }
-  DataFaults lasting = with("clock_drift", "frame");
-  lasting.values_replaced = 3;
-  EXPECT_TRUE(forbids_naming(lasting));
-}
-
-TEST(FaultVeto, TakesNoFaultThatPassedForAnImpulsiveInput) {
-  constexpr auto kImpulsive = static_cast<std::size_t>(effect::Effect::kImpulsiveInput);
-  for (const char* name : {"spikes", "dc_jump", "noise_burst"}) {
-    effect::ExplainerConfig config;
-    disallow_mimics(with(name, "frame"), config);
-    EXPECT_FALSE(config.allowed[kImpulsive]) << name;
-    config.allowed[kImpulsive] = true;
-    EXPECT_EQ(config.allowed, effect::ExplainerConfig::all()) << name;
-  }
-  effect::ExplainerConfig config;
-  disallow_mimics(with("lost_samples", "all"), config);
-  EXPECT_EQ(config.allowed, effect::ExplainerConfig::all());
-}
-
-TEST(FaultVeto, TakesBackWhatWasAdded) {
-  effect::Explanation explanation = explained_by_one_effect(0.5);
-  withhold_effects(explanation);
-  EXPECT_EQ(explanation.conclusion, effect::Conclusion::kUnexplained);
-  EXPECT_EQ(explanation.step_count, 0U);
-  EXPECT_EQ(explanation.final.held_out_nmse, 0.2);
-}
-
-TEST(FaultVeto, PrefersAParameterThatChangedWhereItExplainsMore) {
-  DataFaults faults;
-  EXPECT_FALSE(drift_explains_more(faults, explained_by_one_effect(0.3)));
-  faults.drift = DriftFinding{"coulomb", true, 100.0, 8.0, 0.4, {10.0, 1.0}};
-  EXPECT_TRUE(drift_explains_more(faults, explained_by_one_effect(0.3)));
-  EXPECT_FALSE(drift_explains_more(faults, explained_by_one_effect(0.39)));
-}
-
-TEST(FaultVeto, IsWrittenToTheExplanation) {
+TEST(TruckVerdict, IsWrittenToTheExplanation) {
   Explained explained;
   explained.identified.faults = with("clock_drift", "frame");
   explained.identified.faults.drift = DriftFinding{"coulomb", true, 100.0, 8.0, 0.4, {10.0, 1.0}};

@@ -1,38 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "app/identify/fault_watch.hpp"
+#include "app/identify/fault_findings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/error.hpp"
-#include "dampline/guard/parameter_drift.hpp"
-
 namespace dampline::app {
 namespace {
 
 constexpr std::size_t kMostSpans = 200;
-
-Leading leading_of(const std::string& word) {
-  if (word == "wheelset1") return Leading::kWheelset1;
-  return word == "wheelset2" ? Leading::kWheelset2 : Leading::kUnknown;
-}
-
-GuardConfig guard_config(const Config& config, const EstimatorConfig& core) {
-  GuardConfig out;
-  out.sample_rate_hz = core.sample_rate_hz;
-  out.step_mps2 = core.screen.step_mps2;
-  out.anti_alias = core.anti_alias;
-  for (std::size_t c = 0; c < kChannels; ++c)
-    out.noise_mps2[c] = config.input.noise_mps2[c].value_or(0.0);
-  out.wheelbase_m = config.car.wheelbase_m.value_or(0.0);
-  out.speed_mps = config.input.speed_mps.value_or(0.0);
-  out.leading = leading_of(config.input.leading);
-  const auto checked = Guard::check(out);
-  if (!checked.ok()) throw UsageError{"[input] anti_alias: not a filter that the guards know"};
-  return checked.value();
-}
 
 std::vector<Span> spoilt_spans(const Guard& guard, const Fault& fault, double nominal_hz,
                                const TruckRecord& record) {
@@ -67,8 +44,7 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   const auto own_s = [&](double time_s) {
     return record.time_s(std::llround(time_s * nominal_hz));
   };
-  for (std::size_t i = 0; i < view.count; ++i) {
-    const Fault& fault = view.faults[i];
+  for (const Fault& fault : view.list()) {
     out.list.push_back({name_of(fault.kind),
                         name_of(fault.channel),
                         own_s(fault.time_s),
@@ -80,32 +56,16 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   }
   for (const std::uint64_t impacts : view.inputs.impacts) out.impacts += impacts;
   out.speed_changes = view.inputs.speed_changes;
-  out.values_replaced = view.held.replaced;
-  out.samples_spoilt = view.held.spoilt;
+  out.values_replaced = view.repairs.replaced;
+  out.samples_spoilt = view.repairs.spoilt;
 }
 
-FaultWatch::FaultWatch(const Config& config, const EstimatorConfig& core)
-    : nominal_hz_{core.sample_rate_hz},
-      wait_s_{config.guards.wait_s},
-      guard_{std::make_unique<Guard>(guard_config(config, core))},
-      delay_{std::make_unique<JudgementDelay>(
-          static_cast<std::size_t>(std::llround(config.guards.wait_s * core.sample_rate_hz)))} {}
-
-FaultView FaultWatch::view() const noexcept {
-  FaultView out;
-  for (const Fault& fault : guard_->faults()) out.faults[out.count++] = fault;
-  out.inputs = guard_->inputs();
-  out.held = delay_->counts();
-  return out;
-}
-
-void FaultWatch::finish(const TruckRecord& record, const Statistics& statistics,
-                        RunResult& result) {
+void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,
+                            const TruckRecord& record, double nominal_hz, RunResult& result) {
   DataFaults& out = result.faults;
-  describe_faults(view(), record, nominal_hz_, out);
+  describe_faults(view, record, nominal_hz, out);
   for (std::size_t i = 0; i < out.list.size(); ++i)
-    out.list[i].spans = spoilt_spans(*guard_, guard_->faults()[i], nominal_hz_, record);
-  const ParameterDrift drift = find_parameter_drift(statistics, Estimator::kBlockS);
+    out.list[i].spans = spoilt_spans(guard, view.faults[i], nominal_hz, record);
   if (drift.found) {
     out.drift = DriftFinding{name_of(drift.parameter),
                              drift.step,
@@ -117,6 +77,18 @@ void FaultWatch::finish(const TruckRecord& record, const Statistics& statistics,
                               ". The values stated are means over the record.");
   }
   if (!out.list.empty()) result.warnings.push_back(warning_of(out));
+}
+
+void describe_alarms(const AlarmView& view, const TruckRecord& record, RunResult& result) {
+  const std::uint64_t held = std::min<std::uint64_t>(view.count, AlarmView::kMost);
+  for (std::uint64_t i = view.count - held; i < view.count; ++i) {
+    const AlarmView::Alarm& alarm = view.alarms[i % AlarmView::kMost];
+    const AlarmFinding finding{name_of(alarm.parameter), 100.0 * alarm.change,
+                               record.time_s(alarm.since_tick), record.time_s(alarm.tick)};
+    result.faults.alarms.push_back(finding);
+    result.warnings.push_back(
+        fmt::format("Alarm: {} ({}).", describe_alarm(finding), describe_alarm_figures()));
+  }
 }
 
 }  // namespace dampline::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/judgement.hpp"
+
+#include <algorithm>
+
+namespace dampline::effect {
+namespace {
+
+constexpr double kMoreGain = 0.02;
+
+bool passes(FaultKind kind) noexcept {
+  return kind == FaultKind::kSpikes || kind == FaultKind::kDcJump || kind == FaultKind::kNoiseBurst;
+}
+
+bool is_harmless(const Fault& fault) noexcept {
+  if (fault.kind == FaultKind::kLostSamples || fault.kind == FaultKind::kRepeatedSamples)
+    return fault.channel == FaultChannel::kAll;
+  return fault.kind == FaultKind::kStuckChannel || fault.kind == FaultKind::kWrongSampleRate;
+}
+
+}  // namespace
+
+void withhold_effects(Explanation& explanation) noexcept {
+  if (explanation.step_count == 0) return;
+  drop_steps(explanation);
+  explanation.conclusion = Conclusion::kUnexplained;
+}
+
+bool forbids_naming(const FaultView& faults) noexcept {
+  const bool repaired = faults.repairs.replaced + faults.repairs.spoilt > 0;
+  const auto list = faults.list();
+  return !std::all_of(list.begin(), list.end(), [repaired](const Fault& fault) {
+    return is_harmless(fault) || (repaired && passes(fault.kind));
+  });
+}
+
+void disallow_mimics(std::span<const Fault> faults, ExplainerConfig& config) noexcept {
+  const auto passed = [](const Fault& fault) { return passes(fault.kind); };
+  if (std::any_of(faults.begin(), faults.end(), passed))
+    config.allowed[static_cast<std::size_t>(Effect::kImpulsiveInput)] = false;
+}
+
+bool drift_explains_more(const ParameterDrift& drift, const Explanation& explanation) noexcept {
+  if (!drift.found) return false;
+  return explanation.step_count == 0 || drift.gain > explanation.step[0].gain + kMoreGain;
+}
+
+void judge(const GramStore& store, const ImpulseMeter& impulses, const Grids& grids,
+           ExplainerConfig config, const Circumstances& circumstances, Explainer& explainer,
+           Judgement& out) noexcept {
+  disallow_mimics(circumstances.faults.list(), config);
+  out.explanation = explainer.explain(store, impulses, grids, config);
+  if (out.explanation.conclusion == Conclusion::kNotReady) return;
+  out.withheld = forbids_naming(circumstances.faults);
+  out.drifts = !out.withheld && drift_explains_more(circumstances.drift, out.explanation);
+  if (out.withheld || out.drifts) withhold_effects(out.explanation);
+}
+
+}  // namespace dampline::effect

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/effect/judgement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace dampline::effect {
+namespace {
+
+FaultView with(FaultKind kind, FaultChannel channel) {
+  FaultView view;
+  view.faults[view.count++] = {.kind = kind, .channel = channel, .time_s = 12.0};
+  return view;
+}
+
+constexpr std::array kPassing{FaultKind::kSpikes, FaultKind::kDcJump, FaultKind::kNoiseBurst};
+
+Explanation explained_by_one_effect(double gain) {
+  Explanation explanation;
+  explanation.conclusion = Conclusion::kExplained;
+  explanation.base.held_out_nmse = 0.2;
+  explanation.final.held_out_nmse = 0.2 * (1.0 - gain);
+  explanation.step_count = 1;
+  explanation.step[0].gain = gain;
+  return explanation;
+}
+
+TEST(Judgement, IsForFaultsThatLookLikeEffects) {
+  EXPECT_TRUE(forbids_naming(with(FaultKind::kClockDrift, FaultChannel::kFrame)));
+  EXPECT_TRUE(forbids_naming(with(FaultKind::kLostSamples, FaultChannel::kWheelset1)));
+  EXPECT_FALSE(forbids_naming(with(FaultKind::kLostSamples, FaultChannel::kAll)));
+  EXPECT_FALSE(forbids_naming(with(FaultKind::kStuckChannel, FaultChannel::kFrame)));
+  EXPECT_FALSE(forbids_naming({}));
+}
+
+TEST(Judgement, LetsTheDiagnosisGoOnWhereAFaultThatPassesWasLeftOut) {
+  for (const FaultKind kind : kPassing) {
+    FaultView faults = with(kind, FaultChannel::kFrame);
+    EXPECT_TRUE(forbids_naming(faults)) << name_of(kind);
+    faults.repairs.spoilt = 600;
+    EXPECT_FALSE(forbids_naming(faults)) << name_of(kind);
+  }
+  FaultView lasting = with(FaultKind::kClockDrift, FaultChannel::kFrame);
+  lasting.repairs.replaced = 3;
+  EXPECT_TRUE(forbids_naming(lasting));
+}
+
+TEST(Judgement, TakesNoFaultThatPassedForAnImpulsiveInput) {
+  constexpr auto kImpulsive = static_cast<std::size_t>(Effect::kImpulsiveInput);
+  for (const FaultKind kind : kPassing) {
+    ExplainerConfig config;
+    disallow_mimics(with(kind, FaultChannel::kFrame).list(), config);
+    EXPECT_FALSE(config.allowed[kImpulsive]) << name_of(kind);
+    config.allowed[kImpulsive] = true;
+    EXPECT_EQ(config.allowed, ExplainerConfig::all()) << name_of(kind);
+  }
+  ExplainerConfig config;
+  disallow_mimics(with(FaultKind::kLostSamples, FaultChannel::kAll).list(), config);
+  EXPECT_EQ(config.allowed, ExplainerConfig::all());
+}
+
+TEST(Judgement, TakesBackWhatWasAdded) {
+  Explanation explanation = explained_by_one_effect(0.5);
+  withhold_effects(explanation);
+  EXPECT_EQ(explanation.conclusion, Conclusion::kUnexplained);
+  EXPECT_EQ(explanation.step_count, 0U);
+  EXPECT_EQ(explanation.final.held_out_nmse, 0.2);
+}
+
+TEST(Judgement, PrefersAParameterThatChangedWhereItExplainsMore) {
+  ParameterDrift drift;
+  EXPECT_FALSE(drift_explains_more(drift, explained_by_one_effect(0.3)));
+  drift.found = true;
+  drift.gain = 0.4;
+  EXPECT_TRUE(drift_explains_more(drift, explained_by_one_effect(0.3)));
+  EXPECT_FALSE(drift_explains_more(drift, explained_by_one_effect(0.39)));
+}
+
+}  // namespace
+}  // namespace dampline::effect
