@@ -60,6 +60,12 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   out.samples_spoilt = view.repairs.spoilt;
 }
 
+DriftFinding finding_of(const ParameterDrift& drift) {
+  return {name_of(drift.parameter), drift.step,
+          drift.time_s,             drift.interval_s,
+          drift.gain,               {100.0 * drift.change.value, 100.0 * drift.change.std}};
+}
+
 void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,
                             const TruckRecord& record, double nominal_hz, RunResult& result) {
   DataFaults& out = result.faults;
@@ -67,12 +73,7 @@ void describe_faults_of_all(const Guard& guard, const FaultView& view, const Par
   for (std::size_t i = 0; i < out.list.size(); ++i)
     out.list[i].spans = spoilt_spans(guard, view.faults[i], nominal_hz, record);
   if (drift.found) {
-    out.drift = DriftFinding{name_of(drift.parameter),
-                             drift.step,
-                             drift.time_s,
-                             drift.interval_s,
-                             drift.gain,
-                             {100.0 * drift.change.value, 100.0 * drift.change.std}};
+    out.drift = finding_of(drift);
     result.warnings.push_back("A parameter is not constant: " + describe_drift(*out.drift) +
                               ". The values stated are means over the record.");
   }

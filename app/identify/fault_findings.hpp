@@ -11,6 +11,9 @@ namespace dampline::app {
 void describe_faults(const FaultView& view, const TruckRecord& record, double nominal_hz,
                      DataFaults& out);
 
+/// Precondition: drift.found.
+[[nodiscard]] DriftFinding finding_of(const ParameterDrift& drift);
+
 /// End of the record: the same with the seconds that each fault spoils and a parameter that
 /// changed, with a warning for the reader where there is any of them. `view`: the guard's.
 void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,

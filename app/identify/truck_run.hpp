@@ -74,6 +74,7 @@ class TruckRun {
   [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
   /// Without ending the run.
   [[nodiscard]] TruckView view() noexcept;
+  [[nodiscard]] std::int64_t first_tick() const noexcept { return first_tick_; }
   /// When the first and the newest sample were taken, by their own time. Precondition: not empty().
   [[nodiscard]] std::int64_t first_time_ns() const noexcept { return first_time_ns_; }
   [[nodiscard]] std::int64_t newest_time_ns() const noexcept { return newest_time_ns_; }

@@ -22,8 +22,9 @@ LiveExplainer::LiveExplainer(const Config& config, ExplainRun& run)
     : whole_{config},
       config_{explainer_config(config)},
       run_{run},
-      every_ticks_{std::llround(kEveryS * run.config().estimator.sample_rate_hz)},
+      every_ticks_{std::llround(kEveryS * rate_hz())},
       copy_{std::make_unique<effect::StoreCopy>()},
+      statistics_{std::make_unique<Statistics>()},
       explainer_{std::make_unique<effect::Explainer>()} {
   run.watch([this](const Sample& sample, const UpdateResult&) { take(sample); });
 }
@@ -40,8 +41,10 @@ void LiveExplainer::take(const Sample& sample) noexcept {
   } else if (turn == Turn::kCopy && copy_->step(sums.store())) {
     impulses_ = sums.impulses();
     grids_ = sums.grids();
+    turn_.store(Turn::kCircumstances, std::memory_order_relaxed);
+  } else if (turn == Turn::kCircumstances) {
     circumstances_.faults = run_.core().faults();
-    circumstances_.faults.repairs = {};  // how much is left out is not known yet
+    run_.core().statistics(*statistics_);
     turn_.store(Turn::kJudge, std::memory_order_release);
   }
 }
@@ -68,6 +71,12 @@ void LiveExplainer::run() {
 
 void LiveExplainer::judge() {
   Explained out;
+  circumstances_.drift = find_parameter_drift(*statistics_, Estimator::kBlockS);
+  TruckView view;
+  view.first_tick = run_.first_tick();
+  view.faults = circumstances_.faults;
+  out.identified.faults = faults_of(view, rate_hz());
+  if (circumstances_.drift.found) out.identified.faults.drift = finding_of(circumstances_.drift);
   effect::judge(copy_->store(), impulses_, grids_, config_, circumstances_, *explainer_, out);
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return;
   std::string text = to_json(out);

@@ -34,11 +34,13 @@ class LiveExplainer {
 
  private:
   static constexpr double kEveryS = 8.0;  // between two beginnings
-  /// Who works: the acquisition waits or copies, or the judge has the copy.
-  enum class Turn : std::uint8_t { kWait, kCopy, kJudge };
+  /// Who works: the acquisition waits, copies the sums and then what else is known, or the judge has
+  /// the copies.
+  enum class Turn : std::uint8_t { kWait, kCopy, kCircumstances, kJudge };
 
   void take(const Sample& sample) noexcept;
   void judge();
+  [[nodiscard]] double rate_hz() const noexcept { return run_.config().estimator.sample_rate_hz; }
   void run();
 
   Config whole_;
@@ -46,6 +48,7 @@ class LiveExplainer {
   ExplainRun& run_;
   std::int64_t every_ticks_;
   std::unique_ptr<effect::StoreCopy> copy_;
+  std::unique_ptr<Statistics> statistics_;
   effect::ImpulseMeter impulses_;
   effect::Grids grids_;
   effect::Circumstances circumstances_;  // of the copy
