@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/effect/rows.hpp"
 
+#include <array>
 #include <cmath>
+#include <span>
+
+#include "dampline/numeric/wide.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -16,6 +20,21 @@ double fifth(int n, int reach) noexcept {
   return 672.0 * u * q * q * q * inner;
 }
 constexpr double kFourthAtZero = 672.0;
+
+using SampledSum = std::array<float, kSampledColumns>;
+void add_weighted(SampledSum& sum, float weight, const float* values) noexcept {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * values[i];
+}
+
+/// Adds neighbours in a ring, the first of them at `at`, each with its weight.
+template <class Values>
+DAMPLINE_WIDE void sum_ring(SampledSum& sum, std::span<const double> weights, const Values& values,
+                            std::size_t at) noexcept {
+  for (const double weight : weights) {
+    add_weighted(sum, static_cast<float>(weight), values[at].data());
+    if (++at == values.size()) at = 0;
+  }
+}
 
 }  // namespace
 
@@ -65,14 +84,10 @@ void Rows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
 }
 
 Row Rows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) const noexcept {
-  Sampled sum = Sampled::Zero();
-  std::size_t at = index(tick - bank_.half(scale));
-  for (const double psi : bank_.psi(scale)) {
-    sum += static_cast<float>(psi) * values_[at];
-    if (++at == kRing) at = 0;
-  }
+  SampledSum sum{};
+  sum_ring(sum, bank_.psi(scale), values_, index(tick - bank_.half(scale)));
   Row row;
-  row.head<kSampledColumns>() = sum.cast<double>();
+  for (int i = 0; i < kSampledColumns; ++i) row[i] = sum[static_cast<std::size_t>(i)];
   linear(scale, tick, raw, row);
   return row;
 }

@@ -1,0 +1,22 @@
+option(DAMPLINE_UNITY "compile a folder's files as one: a third of the work from nothing, but a missing #include is not seen" ON)
+
+# by_folder(TARGET): the target's files of one folder are one translation unit. Its property
+# DAMPLINE_APART lists folders and files (by their path below the target's own) that stay apart.
+function(by_folder target)
+  if(NOT DAMPLINE_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  get_target_property(apart ${target} DAMPLINE_APART)
+  foreach(source ${sources})
+    get_filename_component(source ${source} ABSOLUTE)
+    file(RELATIVE_PATH path ${CMAKE_CURRENT_SOURCE_DIR} ${source})
+    get_filename_component(folder ${path} DIRECTORY)
+    if((folder AND folder IN_LIST apart) OR path IN_LIST apart)
+      continue()
+    endif()
+    string(MAKE_C_IDENTIFIER "${target}_${folder}" group)
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+endfunction()

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/dampline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <new>
+
+#include "dampline/damping/estimator.hpp"
+#include "dampline/guard/guard.hpp"
+#include "dampline/sample/assembler.hpp"
+
+namespace {
+
+using namespace dampline;
+
+static_assert(DAMPLINE_CHANNELS == kChannels);
+static_assert(DAMPLINE_CURVE_POINTS == kCurveSegments);
+
+SignalLayout layout_of(const dampline_signal& s) noexcept {
+  return {.start_bit = s.start_bit,
+          .length = s.length,
+          .order = s.motorola ? ByteOrder::kMotorola : ByteOrder::kIntel,
+          .is_signed = s.is_signed,
+          .scale = s.scale,
+          .offset = s.offset,
+          .minimum = s.minimum,
+          .maximum = s.maximum};
+}
+
+ChannelConfig channel_of(const dampline_channel& c) noexcept {
+  return {.id = c.id,
+          .extended = c.extended,
+          .accel = layout_of(c.accel),
+          .has_counter = c.counter.length > 0,
+          .counter = layout_of(c.counter)};
+}
+
+AssemblerConfig frames_config(const dampline_config& config) noexcept {
+  AssemblerConfig out{.sample_rate_hz = config.sample_rate_hz};
+  std::transform(std::begin(config.channels), std::end(config.channels), out.channels.begin(),
+                 [](const dampline_channel& each) { return ::channel_of(each); });
+  return out;
+}
+
+std::array<double, kChannels> steps_of(const dampline_config& config) noexcept {
+  std::array<double, kChannels> out{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const dampline_signal& accel = config.channels[c].accel;
+    if (accel.length > 0) out[c] = std::abs(accel.scale);
+  }
+  return out;
+}
+
+AntiAliasConfig anti_alias_of(const dampline_config& config) noexcept {
+  return {config.anti_alias_corner_hz, config.anti_alias_order};
+}
+
+EstimatorConfig estimator_config(const dampline_config& config) noexcept {
+  EstimatorConfig out{.sample_rate_hz = config.sample_rate_hz,
+                      .moving_mass_kg = config.moving_mass_kg,
+                      .anti_alias = anti_alias_of(config)};
+  out.screen.step_mps2 = steps_of(config);
+  return out;
+}
+
+GuardConfig guard_config(const dampline_config& config) noexcept {
+  GuardConfig out{.sample_rate_hz = config.sample_rate_hz,
+                  .step_mps2 = steps_of(config),
+                  .wheelbase_m = config.wheelbase_m,
+                  .speed_mps = config.speed_mps,
+                  .anti_alias = anti_alias_of(config)};
+  for (std::size_t c = 0; c < kChannels; ++c) out.noise_mps2[c] = config.channels[c].noise_mps2;
+  return out;
+}
+
+bool takes_frames(const dampline_config& config) noexcept {
+  return std::any_of(std::begin(config.channels), std::end(config.channels),
+                     [](const dampline_channel& each) { return each.accel.length > 0; });
+}
+
+bool is_valid(const dampline_config& config) noexcept {
+  return Estimator::check(estimator_config(config)).ok() &&
+         Guard::check(guard_config(config)).ok() &&
+         (!takes_frames(config) || SampleAssembler::check(frames_config(config)).ok());
+}
+
+dampline_estimate plain(const Estimate& each) noexcept { return {each.value, each.std}; }
+
+dampline_snapshot plain(const Snapshot& from) noexcept {
+  dampline_snapshot out{};
+  out.valid = from.valid;
+  out.tick = from.tick;
+  out.coulomb_n = plain(from.coulomb_n);
+  out.stiffness_npm = plain(from.stiffness_npm);
+  out.viscous_nspm = plain(from.viscous_nspm);
+  out.held_out_nmse = from.held_out_nmse;
+  out.velocity_rms_mps = from.velocity_rms_mps;
+  out.std_is_lower_bound = from.std_is_lower_bound;
+  out.samples = from.counts.samples;
+  out.samples_lost = from.counts.lost;
+  out.blocks = from.blocks_in_estimate;
+  for (std::size_t i = 0; i < kCurveSegments; ++i) {
+    out.curve_velocity_mps[i] = from.curve[i].velocity_mps;
+    out.curve_n[i] = {from.curve[i].force_n, from.curve[i].std_n};
+  }
+  return out;
+}
+
+}  // namespace
+
+/// What a program in C holds a pointer to.
+struct dampline_identifier {
+  explicit dampline_identifier(const dampline_config& config) noexcept
+      : frames{frames_config(config)},
+        guard{guard_config(config)},
+        estimator{estimator_config(config)} {}
+
+  void take(const Sample& sample) noexcept {
+    guard.update(sample);
+    static_cast<void>(estimator.update(sample));
+  }
+  void take_ready() noexcept {
+    for (Sample sample; frames.pop(sample);) take(sample);
+  }
+
+  SampleAssembler frames;
+  Guard guard;
+  Estimator estimator;
+};
+static_assert(alignof(dampline_identifier) <= alignof(long double));
+
+extern "C" {
+
+size_t dampline_size(void) { return sizeof(dampline_identifier); }
+
+void dampline_default_config(dampline_config* config) {
+  const EstimatorConfig defaults{};
+  *config = dampline_config{};
+  config->sample_rate_hz = defaults.sample_rate_hz;
+  config->moving_mass_kg = defaults.moving_mass_kg;
+  config->anti_alias_corner_hz = defaults.anti_alias.corner_hz;
+  config->anti_alias_order = defaults.anti_alias.order;
+}
+
+dampline_identifier* dampline_create(void* memory, size_t size, const dampline_config* config) {
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  if (memory == nullptr || size < sizeof(dampline_identifier) ||
+      address % alignof(dampline_identifier) != 0 || !is_valid(*config))
+    return nullptr;
+  return new (memory) dampline_identifier{*config};
+}
+
+void dampline_push_frame(dampline_identifier* self, const dampline_frame* frame) {
+  CanFrame own{.time_ns = frame->time_ns,
+               .id = frame->id,
+               .length = std::min<std::uint8_t>(frame->length, sizeof frame->data),
+               .extended = frame->extended};
+  std::copy_n(frame->data, own.length, own.data.begin());
+  self->frames.push(own);
+  self->take_ready();
+}
+
+void dampline_push_sample(dampline_identifier* self, const dampline_sample* sample) {
+  Sample own{.tick = sample->tick, .time_ns = sample->time_ns, .saturated = sample->saturated};
+  std::copy_n(sample->accel_mps2, kChannels, own.accel_mps2.begin());
+  self->take(own);
+}
+
+void dampline_finish(dampline_identifier* self) {
+  self->frames.flush();
+  self->take_ready();
+  self->guard.finish();
+  self->estimator.finish();
+}
+
+void dampline_get_snapshot(dampline_identifier* self, dampline_snapshot* out) {
+  *out = plain(self->estimator.snapshot());
+}
+
+uint32_t dampline_fault_count(const dampline_identifier* self) {
+  return static_cast<std::uint32_t>(self->guard.faults().size());
+}
+
+bool dampline_get_fault(const dampline_identifier* self, uint32_t index, dampline_fault* out) {
+  if (index >= self->guard.faults().size()) return false;
+  const Fault& fault = self->guard.faults()[index];
+  *out = {name_of(fault.kind), name_of(fault.channel), fault.unit,
+          fault.size,          fault.time_s,           fault.last_s};
+  return true;
+}
+
+}  // extern "C"
