@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kLevel_n = 8356.0;
+constexpr double kLadenLevel_n = 8356.0;
 
 /// Seconds of a laden truck whose samples `change` may alter; false drops the sample.
 template <class Change>
@@ -47,7 +47,7 @@ double value(const RunResult& result, const std::string& name) {
 
 TEST(TruckRun, FindsTheLevelOfASimulatedTruck) {
   const RunResult result = identify(60.0);
-  EXPECT_NEAR(value(result, "coulomb"), kLevel_n, 0.03 * kLevel_n);
+  EXPECT_NEAR(value(result, "coulomb"), kLadenLevel_n, 0.03 * kLadenLevel_n);
   EXPECT_NEAR(value(result, "stiffness"), 5.26e6, 0.05 * 5.26e6);
   EXPECT_EQ(result.curve.size(), 18U);
   EXPECT_LT(result.curve.front().velocity_mps, 0.0);
@@ -64,7 +64,7 @@ TEST(TruckRun, ListsWhatAGapCosts) {
   EXPECT_EQ(result.excluded[0].reason, "samples missing");
   EXPECT_LE(result.excluded[0].start_s, 30.0);
   EXPECT_GE(result.excluded[0].end_s, 30.1);
-  EXPECT_NEAR(value(result, "coulomb"), kLevel_n, 0.05 * kLevel_n);
+  EXPECT_NEAR(value(result, "coulomb"), kLadenLevel_n, 0.05 * kLadenLevel_n);
 }
 
 TEST(TruckRun, GivesNoResultWhereEverythingIsClipped) {

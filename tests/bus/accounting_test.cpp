@@ -207,7 +207,7 @@ TEST_F(TimeTravelAccounting, OfErrorFramesOfEachClass) {
   EXPECT_EQ(times(report, hal::EventKind::kBusError), 70U);
 }
 
-void step_wall_clock(int by_seconds) {
+void shift_wall_clock(int by_seconds) {
   timespec now{};
   ASSERT_EQ(::clock_gettime(CLOCK_REALTIME, &now), 0);
   now.tv_sec += by_seconds;
@@ -216,9 +216,9 @@ void step_wall_clock(int by_seconds) {
 
 TEST_F(TimeTravelAccounting, OfAWallClockSteppedByAnHourAndBack) {
   start();
-  step_wall_clock(3600);
+  shift_wall_clock(3600);
   sensors_.run(seconds{2});
-  step_wall_clock(-3600);
+  shift_wall_clock(-3600);
   sensors_.run(seconds{2});
   const ReaderReport report = finish();
   EXPECT_EQ(report.ledger.sent, sensors_.made());

@@ -8,7 +8,7 @@
 namespace dampline::bus {
 namespace {
 
-const std::string kProgram = DAMPLINE_BINARY_DIR "/dampline";
+const std::string kDampline = DAMPLINE_BINARY_DIR "/dampline";
 
 Words operator+(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
@@ -36,7 +36,7 @@ double value_of(const nlohmann::json& parameters, const std::string& name) {
 LiveProgram::LiveProgram(const Folder& folder, const std::string& interface,
                          std::filesystem::path run, const Words& options)
     : run_{std::move(run)},
-      child_{Words{kProgram, "identify", interface, "--out", run_, "--no-report"} + options,
+      child_{Words{kDampline, "identify", interface, "--out", run_, "--no-report"} + options,
              folder.path()} {
   std::this_thread::sleep_for(std::chrono::seconds{1});
   if (!child_.running()) throw std::runtime_error{"ended at once: " + child_.error()};
@@ -58,7 +58,7 @@ nlohmann::json LiveProgram::stop() {
 }
 
 void identify(const std::filesystem::path& record, const std::filesystem::path& run_folder) {
-  run({kProgram, "identify", record, "--out", run_folder, "--no-report", "--quiet"});
+  run({kDampline, "identify", record, "--out", run_folder, "--no-report", "--quiet"});
 }
 
 Words simulate_command(const std::string& interface, double duration_s, int batch,
@@ -66,7 +66,7 @@ Words simulate_command(const std::string& interface, double duration_s, int batc
   return Words{"chrt",
                "--fifo",
                "60",
-               kProgram,
+               kDampline,
                "simulate",
                "--to",
                interface,

@@ -42,7 +42,7 @@ class FakeRows final : public hal::RowSource {
   std::size_t next_{0};
 };
 
-class Fake {
+class FakeRecord {
  public:
   hal::RowSource& source() { return source_; }
 
@@ -84,8 +84,8 @@ class RowSourceContract : public ::testing::Test {
   Implementation implementation_;
 };
 
-using Implementations = ::testing::Types<Fake, Csv>;
-TYPED_TEST_SUITE(RowSourceContract, Implementations);
+using RowImplementations = ::testing::Types<FakeRecord, Csv>;
+TYPED_TEST_SUITE(RowSourceContract, RowImplementations);
 
 TYPED_TEST(RowSourceContract, FillsWholeRowsOneBehindTheOther) {
   hal::RowSource& source = this->source();

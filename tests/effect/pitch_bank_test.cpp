@@ -8,7 +8,7 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kStepS = 1.0 / 1200.0;
+constexpr double kBankStepS = 1.0 / 1200.0;
 constexpr std::size_t kMode = 4;  // 12 Hz, 0.8 mm
 
 double velocity_mps(double t) { return 0.02 * std::sin(15.0 * t) + 0.008 * std::sin(41.0 * t); }
@@ -20,10 +20,10 @@ class Truth {
   /// Mean of (sign(v + 2 d') + sign(v - 2 d')) / 2 over a step that is centred on t.
   double vertical_share(double t) {
     constexpr int kFine = 100;
-    constexpr double kFineS = kStepS / kFine;
+    constexpr double kFineS = kBankStepS / kFine;
     double sum = 0.0;
     for (int i = 0; i < kFine; ++i) {
-      const double now = t - 0.5 * kStepS + i * kFineS;
+      const double now = t - 0.5 * kBankStepS + i * kFineS;
       const double first = acceleration(now, angle_, rate_);
       const double guess = rate_ + kFineS * first;
       const double second = acceleration(now + kFineS, angle_ + kFineS * rate_, guess);
@@ -49,12 +49,12 @@ class Truth {
 };
 
 TEST(PitchBank, FrictionThatTurnsTheFrameIsThatOfFineSteps) {
-  PitchBank bank{kStepS};
+  PitchBank bank{kBankStepS};
   Truth truth;
   double error = 0.0;
   double moved = 0.0;
   for (int n = 0; n < 6000; ++n) {
-    const double t = n * kStepS;
+    const double t = n * kBankStepS;
     bank.update(velocity_mps(t), turn_mps2(t));
     const double want = std::abs(truth.vertical_share(t));
     const double got = 1.0 - bank.opposed(kMode);
@@ -66,8 +66,8 @@ TEST(PitchBank, FrictionThatTurnsTheFrameIsThatOfFineSteps) {
 }
 
 TEST(PitchBank, NoTurnNoPitch) {
-  PitchBank bank{kStepS};
-  for (int n = 0; n < 600; ++n) bank.update(velocity_mps(n * kStepS), 0.0);
+  PitchBank bank{kBankStepS};
+  for (int n = 0; n < 600; ++n) bank.update(velocity_mps(n * kBankStepS), 0.0);
   for (std::size_t i = 0; i < kPitchModes; ++i) EXPECT_EQ(bank.opposed(i), 0.0);
 }
 

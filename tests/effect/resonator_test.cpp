@@ -9,12 +9,12 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kStepS = 1.0 / 300.0;
+constexpr double kResonatorStepS = 1.0 / 300.0;
 
 TEST(Resonator, FollowsTheClosedFormOfAStepResponse) {
   const double hz = 9.0;
   const double d = 0.2;
-  Resonator resonator{hz, d, kStepS};
+  Resonator resonator{hz, d, kResonatorStepS};
   const double w = 2.0 * std::numbers::pi * hz;
   const double wd = w * std::sqrt(1.0 - d * d);
   resonator.update(0.0);
@@ -26,14 +26,14 @@ TEST(Resonator, FollowsTheClosedFormOfAStepResponse) {
   };
   for (int n = 1; n < 200; ++n) {
     resonator.update(1.0);
-    const double t = n * kStepS;
-    const double rate = (ramp_response_rate(t) - ramp_response_rate(t - kStepS)) / kStepS;
+    const double t = n * kResonatorStepS;
+    const double rate = (ramp_response_rate(t) - ramp_response_rate(t - kResonatorStepS)) / kResonatorStepS;
     ASSERT_NEAR(resonator.rate(), rate, 1e-12) << n;
   }
 }
 
 TEST(Resonator, BeyondTheCriticalDampingItCreepsToItsEnd) {
-  Resonator resonator{12.0, 1.8, kStepS};
+  Resonator resonator{12.0, 1.8, kResonatorStepS};
   const double w = 2.0 * std::numbers::pi * 12.0;
   double largest = 0.0;
   for (int n = 0; n < 600; ++n) {

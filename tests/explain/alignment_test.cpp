@@ -10,7 +10,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kRateHz = 300.0;
+constexpr double kTruckRateHz = 300.0;
 
 /// Tones up to 120 Hz, at a time.
 double tones(double time_s) {
@@ -21,20 +21,20 @@ double tones(double time_s) {
 }
 
 Sample sample_at(std::int64_t tick, double late_s) {
-  const double t = static_cast<double>(tick) / kRateHz;
+  const double t = static_cast<double>(tick) / kTruckRateHz;
   return {.tick = tick, .accel_mps2 = {tones(t), tones(t - late_s), tones(t)}};
 }
 
 TEST(Alignment, SetsALateChannelRightAndLeavesTheOthers) {
   for (const double late_s : {0.0021, -0.0007, 0.0117}) {
-    Alignment alignment{{1, late_s}, kRateHz};
+    Alignment alignment{{1, late_s}, kTruckRateHz};
     int seen = 0;
     for (std::int64_t tick = 5; tick < 400; ++tick) {
       const auto out = alignment.next(sample_at(tick, late_s));
       if (!out) continue;
       ++seen;
       EXPECT_EQ(out->tick, tick - Alignment::kHalf);
-      const double truth = tones(static_cast<double>(out->tick) / kRateHz);
+      const double truth = tones(static_cast<double>(out->tick) / kTruckRateHz);
       EXPECT_NEAR(out->accel_mps2[1], truth, 0.01) << late_s;
       EXPECT_EQ(out->accel_mps2[0], truth);
     }
@@ -43,7 +43,7 @@ TEST(Alignment, SetsALateChannelRightAndLeavesTheOthers) {
 }
 
 TEST(Alignment, StartsAnewAfterAGapAndPassesOnWhatIsNoNumber) {
-  Alignment alignment{{0, 0.001}, kRateHz};
+  Alignment alignment{{0, 0.001}, kTruckRateHz};
   for (std::int64_t tick = 0; tick < 100; ++tick)
     static_cast<void>(alignment.next(sample_at(tick, 0.0)));
   EXPECT_FALSE(alignment.next(sample_at(101, 0.0)));

@@ -10,20 +10,20 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kRateHz = 200.0;
-constexpr double kLengthS = 200.0;
+constexpr double kMeterRateHz = 200.0;
+constexpr double kMeterLengthS = 200.0;
 
 /// Two tones without a common period; the residual is `left` of the point and of the travel since
 /// the last reversal of y.
 Signature signature_of(const std::function<double(EvidencePoint&, double travel_m, bool up)>& left,
                        Evidence* evidence = nullptr) {
-  EvidenceMeter meter{{1.58e-3, 0.02, 5e-5, kRateHz, kLengthS}};
+  EvidenceMeter meter{{1.58e-3, 0.02, 5e-5, kMeterRateHz, kMeterLengthS}};
   double turned_m = 0.0;
   double last_m = 0.0;
   bool up = true;
-  for (int i = 0; i < static_cast<int>(kRateHz * kLengthS); ++i) {
+  for (int i = 0; i < static_cast<int>(kMeterRateHz * kMeterLengthS); ++i) {
     EvidencePoint p;
-    p.time_s = i / kRateHz;
+    p.time_s = i / kMeterRateHz;
     const double a = 2.0 * M_PI * 1.31;
     const double b = 2.0 * M_PI * 2.917;
     p.deflection_m = 2e-3 * std::sin(a * p.time_s) + 1e-3 * std::sin(b * p.time_s + 0.4);

@@ -14,8 +14,8 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kRateHz = 400.0;
-constexpr double kLengthS = 60.0;
+constexpr double kTimedRateHz = 400.0;
+constexpr double kTimedLengthS = 60.0;
 
 double deflection_at(double t) {
   return 0.007 * std::sin(3.1 * t) + 0.004 * std::sin(8.3 * t + 1.0) +
@@ -31,8 +31,8 @@ rig::Explanation explained(const std::function<double(double)>& force_at, std::u
   std::mt19937_64 random{seed};
   std::normal_distribution<double> noise;
   std::string text = "time_s,deflection_m,force_n\n";
-  for (int i = 0; i < static_cast<int>(kRateHz * kLengthS); ++i) {
-    const double t = i / kRateHz;
+  for (int i = 0; i < static_cast<int>(kTimedRateHz * kTimedLengthS); ++i) {
+    const double t = i / kTimedRateHz;
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t, deflection_at(t) + 2e-7 * noise(random),
                         force_at(t) + 6.0 * noise(random));
   }

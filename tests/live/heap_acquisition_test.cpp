@@ -16,7 +16,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::size_t kSamples = 115'000;
+constexpr std::size_t kAcquiredSamples = 115'000;
 
 /// Frames made beforehand, so that making them costs nothing now; every 20,000th is missing, and
 /// every 30,000th comes twice.
@@ -24,7 +24,7 @@ class Prepared final : public hal::FrameSource {
  public:
   Prepared() {
     sim::SimulatedSource source{sim::reference_run(sim::Load::kLaden, 80.0, 3),
-                                static_cast<std::int64_t>(kSamples)};
+                                static_cast<std::int64_t>(kAcquiredSamples)};
     std::vector<CanFrame> batch(3);
     for (auto count = source.read(batch); count.ok(); count = source.read(batch))
       frames_.insert(frames_.end(), batch.begin(),

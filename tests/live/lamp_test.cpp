@@ -9,7 +9,7 @@
 namespace dampline::app {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kOneSecondNs = 1'000'000'000;
 constexpr std::int64_t kTickNs = 25'000'000;
 
 /// What a lamp was told; outlives it.
@@ -61,11 +61,11 @@ TEST(LampPattern, TellsTheStatesApart) {
 TEST(StatusLamp, IsSetOnlyWhenItChanges) {
   Wire wire;
   StatusLamp lamp{std::make_unique<FakeLamp>(wire)};
-  for (std::int64_t ns = 0; ns < 5 * kSecondNs; ns += kTickNs) {
+  for (std::int64_t ns = 0; ns < 5 * kOneSecondNs; ns += kTickNs) {
     lamp.show(LampState::kIdentifying, ns);
   }
   EXPECT_EQ(wire.set, std::vector<bool>{true});
-  for (std::int64_t ns = 5 * kSecondNs; ns < 9 * kSecondNs; ns += kTickNs) {
+  for (std::int64_t ns = 5 * kOneSecondNs; ns < 9 * kOneSecondNs; ns += kTickNs) {
     lamp.show(LampState::kDegraded, ns);
   }
   EXPECT_EQ(wire.set, (std::vector<bool>{true, false, true, false, true}));
@@ -84,11 +84,11 @@ TEST(StatusLamp, CountsFailuresAndTriesAgainOnceASecond) {
   Wire wire;
   wire.broken = true;
   StatusLamp lamp{std::make_unique<FakeLamp>(wire)};
-  for (std::int64_t ns = 0; ns < 5 * kSecondNs; ns += kTickNs) lamp.show(LampState::kFault, ns);
+  for (std::int64_t ns = 0; ns < 5 * kOneSecondNs; ns += kTickNs) lamp.show(LampState::kFault, ns);
   EXPECT_GE(lamp.failures(), 4U);
   EXPECT_LE(lamp.failures(), 6U);
   wire.broken = false;
-  for (std::int64_t ns = 5 * kSecondNs; ns < 7 * kSecondNs; ns += kTickNs) {
+  for (std::int64_t ns = 5 * kOneSecondNs; ns < 7 * kOneSecondNs; ns += kTickNs) {
     lamp.show(LampState::kIdentifying, ns);
   }
   EXPECT_EQ(wire.set, std::vector<bool>{true});

@@ -12,12 +12,12 @@ namespace dampline {
 namespace {
 
 constexpr double kRateHz = 300.0;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Response of the rule at one frequency, over that of an integrator, from its impulse response.
 std::complex<double> response_over_integrator(double f_hz) {
   ShortIntegral integral{1.0 / kRateHz};
-  const double w = kTwoPi * f_hz / kRateHz;
+  const double w = kTurn * f_hz / kRateHz;
   // Differences of the output are finite; the running sum is divided out as 1 - exp(-i w).
   std::complex<double> sum{0.0, 0.0};
   double last = 0.0;
@@ -28,7 +28,7 @@ std::complex<double> response_over_integrator(double f_hz) {
   }
   const std::complex<double> rule = sum / (1.0 - std::polar(1.0, -w));
   const std::complex<double> integrator =
-      std::polar(1.0, -w * ShortIntegral::kDelay) / std::complex<double>{0.0, kTwoPi * f_hz};
+      std::polar(1.0, -w * ShortIntegral::kDelay) / std::complex<double>{0.0, kTurn * f_hz};
   return rule / integrator;
 }
 

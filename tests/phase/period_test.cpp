@@ -12,9 +12,9 @@
 namespace dampline {
 namespace {
 
-constexpr double kStepS = 1.0 / 300.0;
+constexpr double kPeriodStepS = 1.0 / 300.0;
 using Meter = PeriodMeter<512>;
-Meter meter() { return Meter::make(kStepS, 6).value(); }
+Meter meter() { return Meter::make(kPeriodStepS, 6).value(); }
 
 double tone(double time_s, double period_s) {
   const double angle = 2.0 * std::numbers::pi * time_s / period_s;
@@ -27,8 +27,8 @@ class Resonance {
   Resonance(double frequency_hz, double damping, std::uint64_t seed)
       : random_{seed, sim::Stream::kTrack} {
     const double w = 2.0 * std::numbers::pi * frequency_hz;
-    const double fall = std::exp(-damping * w * kStepS);
-    a1_ = 2.0 * fall * std::cos(w * std::sqrt(1.0 - damping * damping) * kStepS);
+    const double fall = std::exp(-damping * w * kPeriodStepS);
+    a1_ = 2.0 * fall * std::cos(w * std::sqrt(1.0 - damping * damping) * kPeriodStepS);
     a2_ = -fall * fall;
   }
   double next() {
@@ -45,7 +45,7 @@ class Resonance {
 TEST(PeriodMeter, FindsThePeriodOfATone) {
   for (const double period_s : {0.21, 0.371, 0.75, 2.2}) {
     Meter m = meter();
-    for (int i = 0; i < 36000; ++i) m.update(5.0 + tone(i * kStepS, period_s));
+    for (int i = 0; i < 36000; ++i) m.update(5.0 + tone(i * kPeriodStepS, period_s));
     const Period p = m.period();
     ASSERT_EQ(p.state, PeriodState::kFound) << period_s;
     EXPECT_NEAR(p.period_s, period_s, 5e-4 * period_s);
@@ -57,9 +57,9 @@ TEST(PeriodMeter, FindsThePeriodOfATone) {
 TEST(PeriodMeter, FindsItUnderNoiseOfTwiceItsPower) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     sim::Random random{seed, sim::Stream::kSensors};
-    Meter m = Meter::make(kStepS, 1).value();
+    Meter m = Meter::make(kPeriodStepS, 1).value();
     for (int i = 0; i < 60000; ++i) {
-      const double s = std::sin(2.0 * std::numbers::pi * i * kStepS / 0.31);
+      const double s = std::sin(2.0 * std::numbers::pi * i * kPeriodStepS / 0.31);
       m.update(s + random.normal());
     }
     const Period p = m.period();
@@ -93,7 +93,7 @@ TEST(PeriodMeter, SaysNoMotionAndNotEnough) {
   Meter still = meter();
   Meter shortly = meter();
   for (int i = 0; i < 36000; ++i) still.update(0.3);
-  for (int i = 0; i < 6000; ++i) shortly.update(tone(i * kStepS, 0.4));
+  for (int i = 0; i < 6000; ++i) shortly.update(tone(i * kPeriodStepS, 0.4));
   EXPECT_EQ(still.period().state, PeriodState::kNoMotion);
   EXPECT_EQ(shortly.period().state, PeriodState::kNotEnough);
   EXPECT_FALSE(Meter::make(0.0, 1).ok());
@@ -104,7 +104,7 @@ TEST(PeriodMeter, GoesOnAfterAGap) {
   Meter m = meter();
   for (int i = 0; i < 40000; ++i) {
     const bool lost = i % 9000 == 8999;
-    m.update(lost ? std::numeric_limits<double>::quiet_NaN() : tone(i * kStepS, 0.4));
+    m.update(lost ? std::numeric_limits<double>::quiet_NaN() : tone(i * kPeriodStepS, 0.4));
   }
   EXPECT_EQ(m.period().state, PeriodState::kFound);
   EXPECT_NEAR(m.period().period_s, 0.4, 4e-4);

@@ -10,13 +10,13 @@
 namespace dampline {
 namespace {
 
-using Identifier = OscillatorIdentifier<LinearTerms>;
+using LinearIdentifier = OscillatorIdentifier<LinearTerms>;
 
 /// Feeds a run; `damage` may change the tick and the samples, and returns false where one is lost.
-std::unique_ptr<Identifier> feed_damaged(
+std::unique_ptr<LinearIdentifier> feed_damaged(
     const sim::AccelerometerRun& run,
     const std::function<bool(std::size_t, double& mass, double& base)>& damage) {
-  auto identifier = std::make_unique<Identifier>();
+  auto identifier = std::make_unique<LinearIdentifier>();
   for (std::size_t n = 0; n < run.mass_mps2.size(); ++n) {
     double mass = run.mass_mps2[n];
     double base = run.base_mps2[n];
@@ -26,7 +26,7 @@ std::unique_ptr<Identifier> feed_damaged(
   return identifier;
 }
 
-void expect_accurate(const Identifier& identifier) {
+void expect_accurate(const LinearIdentifier& identifier) {
   const auto estimate = identifier.estimate();
   ASSERT_TRUE(estimate.ok());
   EXPECT_NEAR(estimate.value().value[0], 3.770, 0.01);
@@ -69,7 +69,7 @@ TEST(AccelerationOnly, LeavesOutAWindowWithAGapAndCountsIt) {
 
 TEST(AccelerationOnly, TakesARepeatedTickForAGap) {
   const auto run = simulate(kLinear, 2.85, 33);
-  const auto identifier = std::make_unique<Identifier>();
+  const auto identifier = std::make_unique<LinearIdentifier>();
   feed(*identifier, run, 0, 3000);
   feed(*identifier, run, 2999, 3000);
   EXPECT_EQ(identifier->excluded().gaps, 1);
@@ -79,10 +79,10 @@ TEST(AccelerationOnly, TakesARepeatedTickForAGap) {
 TEST(AccelerationOnly, KeepsWhatItHasLearnedBeforeTheDamage) {
   const auto run = simulate(kLinear, 2.85, 34);
   const auto damaged = feed_damaged(run, [](std::size_t n, double&, double&) { return n != 9000; });
-  const auto before = std::make_unique<Identifier>();
+  const auto before = std::make_unique<LinearIdentifier>();
   feed(*before, run, 0, 9000);
   before->finish();
-  const auto after = std::make_unique<Identifier>();
+  const auto after = std::make_unique<LinearIdentifier>();
   feed(*after, run, 9001, run.mass_mps2.size());
   after->finish();
   before->merge(*after);

@@ -10,7 +10,7 @@
 namespace dampline {
 namespace {
 
-constexpr double kStepS = 0.05;
+constexpr double kCoarseStepS = 0.05;
 using Duffing = SingleModel<TermList<Viscous, Spring, CubicSpring>>;
 
 double force(const PrescribedMotion& motion, double t) {
@@ -30,7 +30,7 @@ Information<4>::Vector estimate(Rows rows, bool twelve_bit) {
   Information<4> information;
   MotionRow<Duffing> row;
   for (int i = 0; i < 6000; ++i) {
-    const double t = i * kStepS;
+    const double t = i * kCoarseStepS;
     double x = motion.x(t);
     double f = force(motion, t);
     if (twelve_bit) {
@@ -48,7 +48,7 @@ Information<4>::Vector estimate(Rows rows, bool twelve_bit) {
 
 template <class Rows>
 Rows make() {
-  return Rows::make({.step_s = kStepS, .mass_kg = {1.0}}, Duffing{}).value();
+  return Rows::make({.step_s = kCoarseStepS, .mass_kg = {1.0}}, Duffing{}).value();
 }
 
 TEST(CoarseRows, OfExactSignalsGiveExactParameters) {
@@ -88,7 +88,7 @@ TEST(CoarseRows, ComeEveryStrideAndNameTheirFirstSample) {
     last = row.sample;
     ++count;
     EXPECT_NEAR(row.deflection_m[0] - static_cast<double>(row.sample), 3 * 1.005393, 1e-5);
-    EXPECT_NEAR(row.velocity_mps[0], 1.0 / kStepS, 1e-11);
+    EXPECT_NEAR(row.velocity_mps[0], 1.0 / kCoarseStepS, 1e-11);
   }
   EXPECT_GT(count, 70);
 }
@@ -96,17 +96,17 @@ TEST(CoarseRows, ComeEveryStrideAndNameTheirFirstSample) {
 TEST(CoarseRows, CloseTheGateForEverythingThatARowSaw) {
   using Coulomb = SingleModel<TermList<Viscous, Spring, Friction<>>>;
   using Rows = CoarseRows<D6, Coulomb, 1>;
-  Rows rows = Rows::make({.step_s = kStepS, .mass_kg = {1.0}}, Coulomb{}).value();
+  Rows rows = Rows::make({.step_s = kCoarseStepS, .mass_kg = {1.0}}, Coulomb{}).value();
   MotionRow<Coulomb> row;
   const double omega = 0.9;
   int used = 0;
   for (int i = 0; i < 4000; ++i) {
-    const double x = std::sin(omega * i * kStepS);
+    const double x = std::sin(omega * i * kCoarseStepS);
     if (!rows.push({.deflection_m = {x}, .force_n = {0.0}}, row) || !row.usable) continue;
     // From the first fine sample of the leftmost coarse one to the last of the rightmost.
-    const double first = (static_cast<double>(row.sample) - 2 * D6::kReach - D6::kReach) * kStepS;
+    const double first = (static_cast<double>(row.sample) - 2 * D6::kReach - D6::kReach) * kCoarseStepS;
     const double last =
-        (static_cast<double>(row.sample) + 2 * D6::kReach + 5 + D6::kReach) * kStepS;
+        (static_cast<double>(row.sample) + 2 * D6::kReach + 5 + D6::kReach) * kCoarseStepS;
     EXPECT_EQ(std::floor(omega * first / M_PI + 0.5), std::floor(omega * last / M_PI + 0.5));
     ++used;
   }

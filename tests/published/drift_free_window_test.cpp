@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kBlock = 1200;
 constexpr int kGuard = 300;
-constexpr double kStepS = 1.0 / 300.0;
+constexpr double kWindowStepS = 1.0 / 300.0;
 using Window = DriftFreeWindow<kBlock, kGuard>;
 
 std::unique_ptr<Window> integrate(const std::function<double(double)>& accel) {
   auto window = std::make_unique<Window>();
-  const auto at = [&](long i) { return accel(static_cast<double>(i) * kStepS); };
-  for (int i = 0; i < Window::kVelocitySteps; ++i) window->integrate_velocity(i, kStepS, at);
-  for (int i = 0; i < Window::kDeflectionSteps; ++i) window->integrate_deflection(i, kStepS);
+  const auto at = [&](long i) { return accel(static_cast<double>(i) * kWindowStepS); };
+  for (int i = 0; i < Window::kVelocitySteps; ++i) window->integrate_velocity(i, kWindowStepS, at);
+  for (int i = 0; i < Window::kDeflectionSteps; ++i) window->integrate_deflection(i, kWindowStepS);
   for (int i = 0; i < kBlock; ++i) window->remove_drift(i);
   return window;
 }
@@ -46,12 +46,12 @@ std::array<double, kBlock> without_polynomial(const Signal& signal) {
   Window::Slow::Values trend{};
   for (int i = 0; i < Window::kLength; ++i) {
     const auto p = slow.at(i);
-    for (std::size_t j = 0; j < p.size(); ++j) trend[j] += p[j] * signal(i * kStepS);
+    for (std::size_t j = 0; j < p.size(); ++j) trend[j] += p[j] * signal(i * kWindowStepS);
   }
   std::array<double, kBlock> out{};
   for (int i = 0; i < kBlock; ++i) {
     const auto p = slow.at(i + kGuard);
-    out[static_cast<std::size_t>(i)] = signal((i + kGuard) * kStepS) - Window::Slow::sum(trend, p);
+    out[static_cast<std::size_t>(i)] = signal((i + kGuard) * kWindowStepS) - Window::Slow::sum(trend, p);
   }
   return out;
 }

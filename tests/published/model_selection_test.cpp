@@ -14,20 +14,20 @@ namespace {
 using Seven = SingleModel<
     TermList<Viscous, Spring, Power<2, 0>, Power<1, 1>, CubicSpring, VanDerPolDamper, Power<0, 3>>>;
 using Selection = ModelSelection<Seven>;
-constexpr double kStepS = 0.05;
+constexpr double kSelectionStepS = 0.05;
 constexpr Selection::Mask kDuffing{true, true, false, false, true, false, false};
 constexpr Selection::Mask kLinear{true, true, false, false, false, false, false};
 
 /// A Duffing oscillator (m 2, c 0.1, k 1, k3 0.3) whose force is measured with an error.
 Selection duffing(double noise_n, int samples, std::uint64_t seed) {
-  auto rows = MotionRows<D16, Seven>::make({.step_s = kStepS, .mass_kg = {2.0}}, Seven{}).value();
+  auto rows = MotionRows<D16, Seven>::make({.step_s = kSelectionStepS, .mass_kg = {2.0}}, Seven{}).value();
   const PrescribedMotion motion = two_tones();
   std::mt19937_64 random{seed};
   std::normal_distribution<double> normal{0.0, 1.0};
   Selection selection;
   MotionRow<Seven> row;
   for (int i = 0; i < samples; ++i) {
-    const double t = i * kStepS;
+    const double t = i * kSelectionStepS;
     const double x = motion.x(t);
     const double f = 2.0 * motion.a(t) + 0.1 * motion.v(t) + x + 0.3 * x * x * x;
     const double measured = f + noise_n * normal(random);
@@ -68,7 +68,7 @@ TEST(ModelSelection, MseIsTheNoisesShareOfTheAcceleration) {
   double squares = 0.0;
   double mean = 0.0;
   for (int i = 0; i < 8000; ++i) {
-    const double a = two_tones().a(i * kStepS);
+    const double a = two_tones().a(i * kSelectionStepS);
     mean += a / 8000.0;
     squares += a * a / 8000.0;
   }

@@ -17,17 +17,17 @@ namespace {
 using Duffing = SingleModel<TermList<Viscous, Spring, CubicSpring>>;
 using Row = Information<4>::Row;
 
-constexpr double kStepS = 0.05;
+constexpr double kEstimatorStepS = 0.05;
 
 /// Rows of a Duffing oscillator (c 0.04, k 1, k3 0.3); from sample `drop` on, k is 20 % less.
 std::vector<Row> duffing_rows(int samples, int drop) {
   auto rows =
-      MotionRows<D12, Duffing>::make({.step_s = kStepS, .mass_kg = {1.0}}, Duffing{}).value();
+      MotionRows<D12, Duffing>::make({.step_s = kEstimatorStepS, .mass_kg = {1.0}}, Duffing{}).value();
   const PrescribedMotion motion = two_tones();
   std::vector<Row> out;
   MotionRow<Duffing> row;
   for (int i = 0; i < samples; ++i) {
-    const double t = i * kStepS;
+    const double t = i * kEstimatorStepS;
     const double x = motion.x(t);
     const double k = i < drop ? 1.0 : 0.8;
     const double f = motion.a(t) + 0.04 * motion.v(t) + k * x + 0.3 * x * x * x;

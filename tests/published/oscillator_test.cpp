@@ -9,7 +9,7 @@
 namespace dampline::sim {
 namespace {
 
-constexpr double kStepS = 1e-4;
+constexpr double kOscillatorStepS = 1e-4;
 constexpr BaseMotion kStill{0.0, 0.0, 0.0};
 
 TEST(Oscillator, DecaysAsTheClosedFormOfTheLinearSystemSays) {
@@ -20,8 +20,8 @@ TEST(Oscillator, DecaysAsTheClosedFormOfTheLinearSystemSays) {
   const double decay = 0.5 * kViscous;
   const double w = std::sqrt(kStiffness - decay * decay);
   for (int i = 1; i <= 20000; ++i) {
-    oscillator.step(kStill, kStepS);
-    const double t = i * kStepS;
+    oscillator.step(kStill, kOscillatorStepS);
+    const double t = i * kOscillatorStepS;
     const double x = 0.01 * std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t));
     ASSERT_NEAR(oscillator.deflection_m(), x, 1e-12) << t;
   }
@@ -35,7 +35,7 @@ TEST(Oscillator, LosesTwoFrictionWidthsEveryHalfPeriodAndStopsInTheDeadZone) {
   Oscillator oscillator{{.stiffness_ps2 = kStiffness, .coulomb_mps2 = kFriction}};
   oscillator.set_motion(0.0109, 0.0);
   const double half_period_s = std::numbers::pi / 20.0;
-  const auto steps = static_cast<int>(std::lround(half_period_s / kStepS));
+  const auto steps = static_cast<int>(std::lround(half_period_s / kOscillatorStepS));
   double expected = 0.0109;
   for (int half = 0; half < 6; ++half) {
     for (int i = 0; i < steps; ++i) oscillator.step(kStill, half_period_s / steps);
@@ -52,13 +52,13 @@ TEST(Oscillator, MovesWithItsBaseUntilTheBasePullsHarderThanFriction) {
   oscillator.set_motion(0.0, 0.0);
   const auto base = [](double t) { return 1.0 * t; };
   double t = 0.0;
-  for (int i = 0; i < 4999; ++i, t += kStepS) {
-    oscillator.step({base(t), base(t + 0.5 * kStepS), base(t + kStepS)}, kStepS);
+  for (int i = 0; i < 4999; ++i, t += kOscillatorStepS) {
+    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)}, kOscillatorStepS);
   }
   EXPECT_TRUE(oscillator.sticks());
   EXPECT_DOUBLE_EQ(oscillator.mass_accel_mps2(base(t)), base(t));
-  for (int i = 0; i < 2000; ++i, t += kStepS) {
-    oscillator.step({base(t), base(t + 0.5 * kStepS), base(t + kStepS)}, kStepS);
+  for (int i = 0; i < 2000; ++i, t += kOscillatorStepS) {
+    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)}, kOscillatorStepS);
   }
   EXPECT_FALSE(oscillator.sticks());
   // x'' + k x = -(t - 0.5) from rest at 0.5 s.

@@ -13,7 +13,7 @@ namespace {
 using Coulomb = SingleModel<TermList<Viscous, Spring, Friction<>>>;
 using LinearCoulomb = SingleModel<TermList<Viscous, Spring, Friction<>, ProgressiveFriction<>>>;
 
-constexpr double kStepS = 0.01;
+constexpr double kGateStepS = 0.01;
 constexpr double kOmega = 2.0;
 
 double wrapped(double angle, double period) { return std::remainder(angle, period); }
@@ -24,36 +24,36 @@ double from_centre(double t) { return std::abs(wrapped(kOmega * t, M_PI)) / kOme
 
 TEST(SignGate, LeavesOutEveryStencilThatReachesAcrossAReversal) {
   auto rows =
-      MotionRows<D8, Coulomb>::make({.step_s = kStepS, .mass_kg = {1.0}}, Coulomb{}).value();
+      MotionRows<D8, Coulomb>::make({.step_s = kGateStepS, .mass_kg = {1.0}}, Coulomb{}).value();
   MotionRow<Coulomb> row;
   int used = 0;
   int possible = 0;
   for (int i = 0; i < 3000; ++i) {
-    const double x = std::sin(kOmega * i * kStepS);
+    const double x = std::sin(kOmega * i * kGateStepS);
     if (!rows.push({.deflection_m = {x}, .force_n = {0.0}}, row) || row.sample < 300) continue;
-    const double clear_s = from_reversal(static_cast<double>(row.sample) * kStepS);
+    const double clear_s = from_reversal(static_cast<double>(row.sample) * kGateStepS);
     if (row.usable) {
-      EXPECT_GT(clear_s, 6 * kStepS);
+      EXPECT_GT(clear_s, 6 * kGateStepS);
     }
     used += row.usable ? 1 : 0;
-    possible += clear_s > 6 * kStepS ? 1 : 0;
+    possible += clear_s > 6 * kGateStepS ? 1 : 0;
   }
   EXPECT_GT(used, 0.95 * possible);  // lost: one step and what is slower than 2 % of the rms
 }
 
 TEST(SignGate, MindsTheSignOfTheDeflectionWhereATermDoes) {
   auto rows =
-      MotionRows<D8, LinearCoulomb>::make({.step_s = kStepS, .mass_kg = {1.0}}, LinearCoulomb{})
+      MotionRows<D8, LinearCoulomb>::make({.step_s = kGateStepS, .mass_kg = {1.0}}, LinearCoulomb{})
           .value();
   MotionRow<LinearCoulomb> row;
   int used = 0;
   for (int i = 0; i < 3000; ++i) {
-    const double x = std::sin(kOmega * i * kStepS);
+    const double x = std::sin(kOmega * i * kGateStepS);
     if (!rows.push({.deflection_m = {x}, .force_n = {0.0}}, row) || row.sample < 300) continue;
     if (!row.usable) continue;
-    const double t = static_cast<double>(row.sample) * kStepS;
-    EXPECT_GT(from_reversal(t), 6 * kStepS);
-    EXPECT_GT(from_centre(t), 6 * kStepS);
+    const double t = static_cast<double>(row.sample) * kGateStepS;
+    EXPECT_GT(from_reversal(t), 6 * kGateStepS);
+    EXPECT_GT(from_centre(t), 6 * kGateStepS);
     ++used;
   }
   EXPECT_GT(used, 1500);

@@ -10,7 +10,7 @@
 namespace dampline::sim {
 namespace {
 
-constexpr double kStepS = 1.0 / 2400.0;
+constexpr double kModeStepS = 1.0 / 2400.0;
 constexpr double kPi = std::numbers::pi;
 
 /// z_b'' for wheelset accelerations of unit amplitude at one frequency: both alike, or opposite.
@@ -25,10 +25,10 @@ std::complex<double> response(const TruckConfig& config, double hz, bool opposit
   constexpr int kSettle = 96000;
   constexpr int kSteps = 48000;
   for (int i = 0; i < kSettle + kSteps; ++i) {
-    const double t = i * kStepS;
-    truck.step(input(t), input(t + 0.5 * kStepS), input(t + kStepS), t, kStepS);
+    const double t = i * kModeStepS;
+    truck.step(input(t), input(t + 0.5 * kModeStepS), input(t + kModeStepS), t, kModeStepS);
     if (i >= kSettle) {
-      sum += truck.state().frame_mps2 * std::polar(2.0 / kSteps, -2.0 * kPi * hz * (t + kStepS));
+      sum += truck.state().frame_mps2 * std::polar(2.0 / kSteps, -2.0 * kPi * hz * (t + kModeStepS));
     }
   }
   if (last != nullptr) *last = truck.state();
@@ -77,14 +77,14 @@ TEST(FramePitch, MakesTheFrictionOfTheWheelsetsSlipOneByOne) {
   double seen_with = 0.0;
   double seen_without = 0.0;
   for (int i = 0; i < 48000; ++i) {
-    const double t = i * kStepS;
+    const double t = i * kModeStepS;
     const auto input = [](double time) {
       const double bounce = 0.7 * std::sin(2.0 * kPi * 3.0 * time);
       const double pitch = 6.0 * std::sin(2.0 * kPi * 11.0 * time);
       return Excitation{.wheelset_mps2 = {bounce + pitch, bounce - pitch}, .force_n = 0.0};
     };
-    with.step(input(t), input(t + 0.5 * kStepS), input(t + kStepS), t, kStepS);
-    without.step(input(t), input(t + 0.5 * kStepS), input(t + kStepS), t, kStepS);
+    with.step(input(t), input(t + 0.5 * kModeStepS), input(t + kModeStepS), t, kModeStepS);
+    without.step(input(t), input(t + 0.5 * kModeStepS), input(t + kModeStepS), t, kModeStepS);
     seen_with += std::abs(with.state().damping_force_n);
     seen_without += std::abs(without.state().damping_force_n);
   }

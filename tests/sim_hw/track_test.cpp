@@ -11,14 +11,13 @@
 namespace dampline::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 constexpr std::size_t kWindow = 40000;
 
 std::vector<double> hann() {
   std::vector<double> window(kWindow);
   for (std::size_t n = 0; n < kWindow; ++n) {
-    window[n] = 1.0 - std::cos(2.0 * kPi * static_cast<double>(n) / kWindow);
+    window[n] = 1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(n) / kWindow);
   }
   return window;
 }
@@ -42,7 +41,7 @@ double slope_density(const std::vector<double>& slope, double wave_number) {
     sum += std::norm(bin);
     ++windows;
   }
-  return sum / windows * Track::kGridM / (kPi * energy);
+  return sum / windows * Track::kGridM / (std::numbers::pi * energy);
 }
 
 TEST(Track, HasTheDensityOfOreB176) {
@@ -103,7 +102,7 @@ TEST(Track, AddsShortWavesOfTheWantedAccelerationInTheirBand) {
   }
   EXPECT_NEAR(std::sqrt(sum / kPoints), 2.0, 0.06);
   const auto acceleration_density = [&](double hz) {
-    const double om = 2.0 * kPi * hz / config.nominal_speed_mps;
+    const double om = 2.0 * std::numbers::pi * hz / config.nominal_speed_mps;
     double mean = 0.0;
     for (int bin = -3; bin <= 3; ++bin) mean += slope_density(slope, om + bin * 0.03) / 7.0;
     return om * om * mean;

@@ -11,7 +11,7 @@
 namespace dampline::sim {
 namespace {
 
-constexpr double kStepS = 1.0 / 2400.0;
+constexpr double kTruckStepS = 1.0 / 2400.0;
 
 /// Deflection after each step of a free vibration.
 std::vector<double> free_vibration(const TruckConfig& config, double deflection_m, int steps) {
@@ -19,7 +19,7 @@ std::vector<double> free_vibration(const TruckConfig& config, double deflection_
   truck.set_motion(deflection_m, 0.0);
   std::vector<double> y{deflection_m};
   for (int i = 0; i < steps; ++i) {
-    truck.step({}, {}, {}, i * kStepS, kStepS);
+    truck.step({}, {}, {}, i * kTruckStepS, kTruckStepS);
     y.push_back(truck.state().deflection_m);
   }
   return y;
@@ -45,7 +45,7 @@ TEST(Truck, WithoutFrictionSwingsAtTheNaturalFrequency) {
   const double omega = std::sqrt(2.0 * config.stiffness_npm / config.moving_mass_kg);
   const std::vector<double> y = free_vibration(config, 0.01, 24000);
   for (const std::size_t i : {600U, 5000U, 24000U}) {
-    EXPECT_NEAR(y[i], 0.01 * std::cos(omega * kStepS * static_cast<double>(i)), 1e-9);
+    EXPECT_NEAR(y[i], 0.01 * std::cos(omega * kTruckStepS * static_cast<double>(i)), 1e-9);
   }
 }
 
@@ -58,7 +58,7 @@ TEST(Truck, WithViscousDampingFollowsTheClosedForm) {
   const double omega = std::sqrt(omega0 * omega0 - delta * delta);
   const std::vector<double> y = free_vibration(config, 0.01, 4800);
   for (const std::size_t i : {300U, 2000U, 4800U}) {
-    const double t = kStepS * static_cast<double>(i);
+    const double t = kTruckStepS * static_cast<double>(i);
     const double exact =
         0.01 * std::exp(-delta * t) * (std::cos(omega * t) + delta / omega * std::sin(omega * t));
     EXPECT_NEAR(y[i], exact, 1e-8);
@@ -123,7 +123,7 @@ TEST(Truck, ObeysItsEquationOfMotion) {
   Truck truck{config};
   for (int i = 0; i < 5000; ++i) {
     const Excitation e{.wheelset_mps2 = {std::sin(0.01 * i), std::cos(0.013 * i)}, .force_n = 0.0};
-    truck.step(e, e, e, i * kStepS, kStepS);
+    truck.step(e, e, e, i * kTruckStepS, kTruckStepS);
     const TruckState& s = truck.state();
     const double residual = config.moving_mass_kg * s.frame_mps2 +
                             config.stiffness_npm * s.deflection_m + s.damping_force_n;
@@ -142,11 +142,11 @@ TEST(Truck, StaysStableWithFourTimesTheFrictionAndWithPitch) {
     Truck truck{config};
     double largest = 0.0;
     for (int i = 0; i < 24000; ++i) {
-      const double t = i * kStepS;
+      const double t = i * kTruckStepS;
       const Excitation e{
           .wheelset_mps2 = {2.0 * std::sin(25.0 * t), 2.0 * std::sin(25.0 * t + 1.0)},
           .force_n = 0.0};
-      truck.step(e, e, e, t, kStepS);
+      truck.step(e, e, e, t, kTruckStepS);
       largest = std::max(largest, std::abs(truck.state().deflection_m));
     }
     EXPECT_LT(largest, 0.05);

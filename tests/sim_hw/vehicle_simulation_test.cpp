@@ -20,7 +20,7 @@ SimulationConfig vehicle_run(Load load, TruckPosition instrumented,
   return config;
 }
 
-VehicleConfig uncoupled() {
+VehicleConfig uncoupled_vehicle() {
   VehicleConfig config;
   config.gyration_radius_m = config.half_pivot_distance_m;
   return config;
@@ -28,7 +28,7 @@ VehicleConfig uncoupled() {
 
 TEST(VehicleSimulation, OfTheReductionIsThatOfTheTruck) {
   Simulation truck{reference_run(Load::kLaden, 80.0, 4)};
-  Simulation vehicle{vehicle_run(Load::kLaden, TruckPosition::kLeading, uncoupled())};
+  Simulation vehicle{vehicle_run(Load::kLaden, TruckPosition::kLeading, uncoupled_vehicle())};
   for (int i = 0; i < 3000; ++i) {
     const SimulatedSample a = truck.next();
     const SimulatedSample b = vehicle.next();
@@ -90,7 +90,7 @@ Snapshot identified(const SimulationConfig& config, double mass_kg, int seconds)
 
 TEST(VehicleSimulation, HasALevelThatTheIdentifierFinds) {
   const Snapshot reduced =
-      identified(vehicle_run(Load::kLaden, TruckPosition::kTrailing, uncoupled()), 37200.0, 60);
+      identified(vehicle_run(Load::kLaden, TruckPosition::kTrailing, uncoupled_vehicle()), 37200.0, 60);
   ASSERT_TRUE(reduced.valid);
   EXPECT_NEAR(reduced.coulomb_n.value, 8356.0, 0.015 * 8356.0);
   EXPECT_NEAR(reduced.stiffness_npm.value, 5.26e6, 0.03 * 5.26e6);
