@@ -27,7 +27,8 @@ TEST(Resonator, FollowsTheClosedFormOfAStepResponse) {
   for (int n = 1; n < 200; ++n) {
     resonator.update(1.0);
     const double t = n * kResonatorStepS;
-    const double rate = (ramp_response_rate(t) - ramp_response_rate(t - kResonatorStepS)) / kResonatorStepS;
+    const double rate =
+        (ramp_response_rate(t) - ramp_response_rate(t - kResonatorStepS)) / kResonatorStepS;
     ASSERT_NEAR(resonator.rate(), rate, 1e-12) << n;
   }
 }

@@ -104,7 +104,8 @@ TEST(CoarseRows, CloseTheGateForEverythingThatARowSaw) {
     const double x = std::sin(omega * i * kCoarseStepS);
     if (!rows.push({.deflection_m = {x}, .force_n = {0.0}}, row) || !row.usable) continue;
     // From the first fine sample of the leftmost coarse one to the last of the rightmost.
-    const double first = (static_cast<double>(row.sample) - 2 * D6::kReach - D6::kReach) * kCoarseStepS;
+    const double first =
+        (static_cast<double>(row.sample) - 2 * D6::kReach - D6::kReach) * kCoarseStepS;
     const double last =
         (static_cast<double>(row.sample) + 2 * D6::kReach + 5 + D6::kReach) * kCoarseStepS;
     EXPECT_EQ(std::floor(omega * first / M_PI + 0.5), std::floor(omega * last / M_PI + 0.5));

@@ -51,7 +51,8 @@ std::array<double, kBlock> without_polynomial(const Signal& signal) {
   std::array<double, kBlock> out{};
   for (int i = 0; i < kBlock; ++i) {
     const auto p = slow.at(i + kGuard);
-    out[static_cast<std::size_t>(i)] = signal((i + kGuard) * kWindowStepS) - Window::Slow::sum(trend, p);
+    out[static_cast<std::size_t>(i)] =
+        signal((i + kGuard) * kWindowStepS) - Window::Slow::sum(trend, p);
   }
   return out;
 }

@@ -20,7 +20,8 @@ constexpr Selection::Mask kLinear{true, true, false, false, false, false, false}
 
 /// A Duffing oscillator (m 2, c 0.1, k 1, k3 0.3) whose force is measured with an error.
 Selection duffing(double noise_n, int samples, std::uint64_t seed) {
-  auto rows = MotionRows<D16, Seven>::make({.step_s = kSelectionStepS, .mass_kg = {2.0}}, Seven{}).value();
+  auto rows =
+      MotionRows<D16, Seven>::make({.step_s = kSelectionStepS, .mass_kg = {2.0}}, Seven{}).value();
   const PrescribedMotion motion = two_tones();
   std::mt19937_64 random{seed};
   std::normal_distribution<double> normal{0.0, 1.0};

@@ -22,7 +22,8 @@ constexpr double kEstimatorStepS = 0.05;
 /// Rows of a Duffing oscillator (c 0.04, k 1, k3 0.3); from sample `drop` on, k is 20 % less.
 std::vector<Row> duffing_rows(int samples, int drop) {
   auto rows =
-      MotionRows<D12, Duffing>::make({.step_s = kEstimatorStepS, .mass_kg = {1.0}}, Duffing{}).value();
+      MotionRows<D12, Duffing>::make({.step_s = kEstimatorStepS, .mass_kg = {1.0}}, Duffing{})
+          .value();
   const PrescribedMotion motion = two_tones();
   std::vector<Row> out;
   MotionRow<Duffing> row;

@@ -53,12 +53,14 @@ TEST(Oscillator, MovesWithItsBaseUntilTheBasePullsHarderThanFriction) {
   const auto base = [](double t) { return 1.0 * t; };
   double t = 0.0;
   for (int i = 0; i < 4999; ++i, t += kOscillatorStepS) {
-    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)}, kOscillatorStepS);
+    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)},
+                    kOscillatorStepS);
   }
   EXPECT_TRUE(oscillator.sticks());
   EXPECT_DOUBLE_EQ(oscillator.mass_accel_mps2(base(t)), base(t));
   for (int i = 0; i < 2000; ++i, t += kOscillatorStepS) {
-    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)}, kOscillatorStepS);
+    oscillator.step({base(t), base(t + 0.5 * kOscillatorStepS), base(t + kOscillatorStepS)},
+                    kOscillatorStepS);
   }
   EXPECT_FALSE(oscillator.sticks());
   // x'' + k x = -(t - 0.5) from rest at 0.5 s.

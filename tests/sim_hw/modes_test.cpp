@@ -28,7 +28,8 @@ std::complex<double> response(const TruckConfig& config, double hz, bool opposit
     const double t = i * kModeStepS;
     truck.step(input(t), input(t + 0.5 * kModeStepS), input(t + kModeStepS), t, kModeStepS);
     if (i >= kSettle) {
-      sum += truck.state().frame_mps2 * std::polar(2.0 / kSteps, -2.0 * kPi * hz * (t + kModeStepS));
+      sum +=
+          truck.state().frame_mps2 * std::polar(2.0 / kSteps, -2.0 * kPi * hz * (t + kModeStepS));
     }
   }
   if (last != nullptr) *last = truck.state();

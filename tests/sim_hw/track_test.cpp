@@ -11,7 +11,6 @@
 namespace dampline::sim {
 namespace {
 
-
 constexpr std::size_t kWindow = 40000;
 
 std::vector<double> hann() {

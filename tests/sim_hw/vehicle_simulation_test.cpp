@@ -89,8 +89,8 @@ Snapshot identified(const SimulationConfig& config, double mass_kg, int seconds)
 }
 
 TEST(VehicleSimulation, HasALevelThatTheIdentifierFinds) {
-  const Snapshot reduced =
-      identified(vehicle_run(Load::kLaden, TruckPosition::kTrailing, uncoupled_vehicle()), 37200.0, 60);
+  const Snapshot reduced = identified(
+      vehicle_run(Load::kLaden, TruckPosition::kTrailing, uncoupled_vehicle()), 37200.0, 60);
   ASSERT_TRUE(reduced.valid);
   EXPECT_NEAR(reduced.coulomb_n.value, 8356.0, 0.015 * 8356.0);
   EXPECT_NEAR(reduced.stiffness_npm.value, 5.26e6, 0.03 * 5.26e6);
