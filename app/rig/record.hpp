@@ -73,7 +73,6 @@ class Clock {
 
   [[nodiscard]] double interval_s() const noexcept { return interval_s_; }
   [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
-  [[nodiscard]] double first_s() const noexcept { return first_s_; }
   /// Interval by the first and the last row; the one in use where there are too few.
   [[nodiscard]] double mean_interval_s() const noexcept;
 

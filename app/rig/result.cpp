@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "app/error.hpp"
@@ -15,30 +16,36 @@
 namespace dampline::app::rig {
 namespace {
 
-void set(core::Branches& branches, core::Branches wanted, const char* what) {
-  if (branches != core::Branches::kNone && branches != wanted)
-    throw UsageError{
-        fmt::format("[model] base: found both {0} and asymmetric_{0}, expected one of them", what)};
-  branches = wanted;
-}
+/// Effects of a base that have one value or one for each direction, in the order of results.
+struct BaseEffect {
+  std::string_view name;
+  const char* kind;
+  core::Branches core::Terms::*term;
+  core::Branches branches;
+};
+constexpr std::array kBaseEffects{
+    BaseEffect{"coulomb", "coulomb", &core::Terms::coulomb, core::Branches::kCommon},
+    BaseEffect{"asymmetric_coulomb", "coulomb", &core::Terms::coulomb, core::Branches::kSeparate},
+    BaseEffect{"viscous", "viscous", &core::Terms::viscous, core::Branches::kCommon},
+    BaseEffect{"asymmetric_viscous", "viscous", &core::Terms::viscous, core::Branches::kSeparate}};
 
 void add_effect(const std::string& name, core::Terms& terms) {
-  if (name == "viscous") {
-    set(terms.viscous, core::Branches::kCommon, "viscous");
-  } else if (name == "asymmetric_viscous") {
-    set(terms.viscous, core::Branches::kSeparate, "viscous");
-  } else if (name == "coulomb") {
-    set(terms.coulomb, core::Branches::kCommon, "coulomb");
-  } else if (name == "asymmetric_coulomb") {
-    set(terms.coulomb, core::Branches::kSeparate, "coulomb");
-  } else if (name == "offset_force") {
+  if (name == "offset_force") {
     terms.offset = true;
-  } else {
+    return;
+  }
+  const auto* const found = std::find_if(kBaseEffects.begin(), kBaseEffects.end(),
+                                         [&](const BaseEffect& e) { return e.name == name; });
+  if (found == kBaseEffects.end())
     throw UsageError{fmt::format(
         "[model] base: found \"{}\", expected of a rig: viscous, asymmetric_viscous, coulomb, "
         "asymmetric_coulomb, offset_force",
         name)};
-  }
+  core::Branches& branches = terms.*(found->term);
+  if (branches != core::Branches::kNone && branches != found->branches)
+    throw UsageError{fmt::format(
+        "[model] base: found both {0} and asymmetric_{0}, expected one of them", found->kind)};
+  branches = found->branches;
 }
 
 struct Text {
@@ -156,10 +163,7 @@ std::string fit_text(const core::Errors& errors) {
 std::string spring_note(const Findings& f) {
   if (!f.with_spring || !f.with_spring->valid) return "";
   if (f.with_spring->held_out_nmse > kSpringMatters * f.snapshot.held_out_nmse) return "";
-  double stiffness = 0.0;
-  for (std::size_t i = 0; i < f.with_spring->size; ++i)
-    if (f.with_spring->estimates[i].parameter == core::Parameter::kStiffness)
-      stiffness = f.with_spring->estimates[i].estimate.value;
+  const double stiffness = find(*f.with_spring, core::Parameter::kStiffness).value;
   return fmt::format(
       "A linear spring of {:.3g} N/m would lower the held-out rrse from {:.3f} to {:.3f}. If the "
       "measured force contains a spring, set stiffness = \"identify\" in [model]; otherwise "
@@ -204,10 +208,8 @@ std::vector<std::string> term_names(const core::Terms& terms) {
   std::vector<std::string> out;
   if (terms.inertia) out.emplace_back("moving mass");
   if (terms.stiffness) out.emplace_back("linear spring");
-  if (terms.coulomb == core::Branches::kCommon) out.emplace_back("coulomb");
-  if (terms.coulomb == core::Branches::kSeparate) out.emplace_back("asymmetric_coulomb");
-  if (terms.viscous == core::Branches::kCommon) out.emplace_back("viscous");
-  if (terms.viscous == core::Branches::kSeparate) out.emplace_back("asymmetric_viscous");
+  for (const BaseEffect& e : kBaseEffects)
+    if (terms.*(e.term) == e.branches) out.emplace_back(e.name);
   if (terms.offset) out.emplace_back("offset_force");
   return out;
 }
