@@ -36,8 +36,7 @@ struct Source {
   }
 };
 
-void add_parameter(Step& step, const char* name, const Estimate& estimate,
-                   const char* unit) noexcept {
+void put(Step& step, const char* name, const Estimate& estimate, const char* unit) noexcept {
   step.parameter[step.parameter_count++] = {name, estimate, unit};
 }
 
@@ -65,21 +64,20 @@ Estimate sum_of(const Source& s, const Step& step, double scale) noexcept {
 void describe_damping(const Source& s, Step& step) noexcept {
   switch (step.chosen.effect) {
     case Effect::kViscous:
-      return add_parameter(step, "viscous", s.coefficient(0, s.mass_kg), "N s/m");
+      return put(step, "viscous", s.coefficient(0, s.mass_kg), "N s/m");
     case Effect::kQuadraticDamping:
-      return add_parameter(step, "quadratic_damping", s.coefficient(0, s.mass_kg), "N s^2/m^2");
+      return put(step, "quadratic_damping", s.coefficient(0, s.mass_kg), "N s^2/m^2");
     case Effect::kAsymmetricViscous: {
       const Estimate even = s.coefficient(0, s.mass_kg);
       const Estimate odd = s.coefficient(1, s.mass_kg);
       const double covariance =
           s.mass_kg * s.mass_kg * s.factor * s.factor * s.fit.covariance(s.term, s.term + 1);
       const double squares = even.std * even.std + odd.std * odd.std;
-      add_parameter(step, "viscous_positive",
-                    {odd.value + even.value, std::sqrt(std::max(squares + 2.0 * covariance, 0.0))},
-                    "N s/m");
-      return add_parameter(
-          step, "viscous_negative",
-          {odd.value - even.value, std::sqrt(std::max(squares - 2.0 * covariance, 0.0))}, "N s/m");
+      put(step, "viscous_positive",
+          {odd.value + even.value, std::sqrt(std::max(squares + 2.0 * covariance, 0.0))}, "N s/m");
+      return put(step, "viscous_negative",
+                 {odd.value - even.value, std::sqrt(std::max(squares - 2.0 * covariance, 0.0))},
+                 "N s/m");
     }
     default:
       return;
@@ -92,20 +90,19 @@ void describe_friction(const Source& s, Step& step) noexcept {
       // F (1 + y / length)
       const Estimate slope = s.share();
       const double length_m = 1.0 / slope.value;
-      return add_parameter(step, "progressive_friction_length",
-                           {length_m, std::abs(length_m * slope.std / slope.value)}, "m");
+      return put(step, "progressive_friction_length",
+                 {length_m, std::abs(length_m * slope.std / slope.value)}, "m");
     }
     case Effect::kStribeck:
-      add_parameter(step, "stribeck_share", s.share(), "");
-      return add_parameter(step, "stribeck_speed", on_grid(s.grids.stribeck_mps, step, 1.0), "m/s");
+      put(step, "stribeck_share", s.share(), "");
+      return put(step, "stribeck_speed", on_grid(s.grids.stribeck_mps, step, 1.0), "m/s");
     case Effect::kPreslidingHysteresis:
-      add_parameter(step, "presliding_hysteresis_force", sum_of(s, step, s.mass_kg), "N");
-      return add_parameter(step, "presliding_hysteresis_distance",
-                           on_grid(s.grids.dahl_distance, step, s.grids.scale_m), "m");
+      put(step, "presliding_hysteresis_force", sum_of(s, step, s.mass_kg), "N");
+      return put(step, "presliding_hysteresis_distance",
+                 on_grid(s.grids.dahl_distance, step, s.grids.scale_m), "m");
     case Effect::kBacklash:
-      add_parameter(step, "backlash_force", sum_of(s, step, s.mass_kg), "N");
-      return add_parameter(step, "backlash_gap",
-                           on_grid(s.grids.backlash_gap, step, s.grids.scale_m), "m");
+      put(step, "backlash_force", sum_of(s, step, s.mass_kg), "N");
+      return put(step, "backlash_gap", on_grid(s.grids.backlash_gap, step, s.grids.scale_m), "m");
     default:
       return;
   }
@@ -114,17 +111,15 @@ void describe_friction(const Source& s, Step& step) noexcept {
 void describe_stiffness(const Source& s, Step& step) noexcept {
   switch (step.chosen.effect) {
     case Effect::kCubicStiffness:
-      return add_parameter(step, "cubic_stiffness", s.coefficient(0, s.mass_kg), "N/m^3");
+      return put(step, "cubic_stiffness", s.coefficient(0, s.mass_kg), "N/m^3");
     case Effect::kQuadraticStiffness:
-      return add_parameter(step, "quadratic_stiffness", s.coefficient(0, s.mass_kg), "N/m^2");
+      return put(step, "quadratic_stiffness", s.coefficient(0, s.mass_kg), "N/m^2");
     case Effect::kAsymmetricStiffness:
       // k y + theta |y|: k + theta for y > 0, k - theta for y < 0
-      return add_parameter(step, "asymmetric_stiffness_difference",
-                           s.coefficient(0, 2.0 * s.mass_kg), "N/m");
+      return put(step, "asymmetric_stiffness_difference", s.coefficient(0, 2.0 * s.mass_kg), "N/m");
     case Effect::kBumpStop:
-      add_parameter(step, "bump_stop_stiffness", s.coefficient(0, s.mass_kg), "N/m");
-      return add_parameter(step, "bump_stop_gap", on_grid(s.grids.bump_gap, step, s.grids.scale_m),
-                           "m");
+      put(step, "bump_stop_stiffness", s.coefficient(0, s.mass_kg), "N/m");
+      return put(step, "bump_stop_gap", on_grid(s.grids.bump_gap, step, s.grids.scale_m), "m");
     default:
       return;
   }
@@ -135,18 +130,17 @@ void describe_mode(const Source& s, Step& step) noexcept {
     const double ratio = s.grids.pitch[1].frequency_hz / s.grids.pitch[0].frequency_hz;
     const double hz = pitch_of(step, s.grids).frequency_hz;
     const double std = std::hypot(std::log(ratio) * step.place_std, kPitchLawStd);
-    add_parameter(step, "unmodelled_mode_frequency", {hz, hz * std}, "Hz");
-    return add_parameter(step, "unmodelled_mode_force", s.coefficient(0, s.mass_kg), "N");
+    put(step, "unmodelled_mode_frequency", {hz, hz * std}, "Hz");
+    return put(step, "unmodelled_mode_force", s.coefficient(0, s.mass_kg), "N");
   }
   // t = (k X_k + F X_F - m B) / (1 - m): the coefficient is -m / (1 - m), m of all mass.
   const Estimate ratio = sum_of(s, step, -1.0);
   const double left = 1.0 / (1.0 + ratio.value);
   const double step_ratio = s.grids.flexible[1].frequency_hz / s.grids.flexible[0].frequency_hz;
   const double hz = flexible_of(step, s.grids).frequency_hz;
-  add_parameter(step, "unmodelled_mode_frequency", {hz, hz * std::log(step_ratio) * step.place_std},
-                "Hz");
-  add_parameter(step, "unmodelled_mode_mass",
-                {s.mass_kg * ratio.value * left, s.mass_kg * ratio.std * left * left}, "kg");
+  put(step, "unmodelled_mode_frequency", {hz, hz * std::log(step_ratio) * step.place_std}, "Hz");
+  put(step, "unmodelled_mode_mass",
+      {s.mass_kg * ratio.value * left, s.mass_kg * ratio.std * left * left}, "kg");
 }
 
 void describe_rest(const Source& s, Step& step) noexcept {
@@ -156,15 +150,13 @@ void describe_rest(const Source& s, Step& step) noexcept {
                                              "gain_error_wheelset2"};
   switch (step.chosen.effect) {
     case Effect::kTimeSkew:
-      return add_parameter(step, kSkew[step.chosen.form], s.coefficient(0, 1.0), "s");
+      return put(step, kSkew[step.chosen.form], s.coefficient(0, 1.0), "s");
     case Effect::kGainError: {
       const Estimate e = s.coefficient(0, 1.0);
-      if (step.chosen.form != kFrameForm)
-        return add_parameter(step, kGain[step.chosen.form], e, "");
+      if (step.chosen.form != kFrameForm) return put(step, kGain[step.chosen.form], e, "");
       // z_b'' = (1 - e) times what is measured, which is 1 + gain times it.
       const double left = 1.0 / (1.0 - e.value);
-      return add_parameter(step, kGain[step.chosen.form], {e.value * left, e.std * left * left},
-                           "");
+      return put(step, kGain[step.chosen.form], {e.value * left, e.std * left * left}, "");
     }
     case Effect::kUnmodelledMode:
       return describe_mode(s, step);

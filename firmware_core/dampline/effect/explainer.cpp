@@ -20,6 +20,13 @@ constexpr double kImpulseShare = 0.08;  // of the residual's energy in large val
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
 
+/// Where the coefficients of a model's i-th effect begin.
+int first_term(const Model& model, std::size_t i) noexcept {
+  int term = ModelFit::kFirstEffect;
+  for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
+  return term;
+}
+
 bool contains(const Model& model, Effect effect) noexcept {
   for (std::size_t i = 0; i < model.count; ++i) {
     if (model.effect[i].effect == effect) return true;
@@ -168,9 +175,7 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
     const Candidate before = place;
     Best best{true, before, now.held_out_nmse, handicap(before) * now.held_out_nmse};
     list_candidates(base_of(now), grids_, candidates_);
-    int term = ModelFit::kFirstEffect;
-    for (std::size_t e = 0; e < out.base_count + i; ++e)
-      term += static_cast<int>(out.model.effect[e].count);
+    const int term = first_term(out.model, out.base_count + i);
     for (std::size_t c = 0; c < candidates_.count; ++c) {
       if (!is_of_grid(candidates_.item[c], before)) continue;
       place = candidates_.item[c];
@@ -271,8 +276,7 @@ void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
   step.place = chosen.variant;
   step.place_std = kGridStd;
   if (is_pair(chosen)) {
-    int term = ModelFit::kFirstEffect;
-    for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
+    const int term = first_term(model, i);
     const double low = std::abs(final.theta[term]);
     const double high = std::abs(final.theta[term + 1]);
     step.place += high / (low + high);
@@ -396,8 +400,7 @@ Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
   for (std::size_t i = 0; i < model.count; ++i) {
     if (model.effect[i].count > 0) with = with.with(model.effect[i]);
   }
-  int term = ModelFit::kFirstEffect;
-  for (std::size_t i = 0; i < with.count; ++i) term += static_cast<int>(with.effect[i].count);
+  const int term = first_term(with, with.count);
   with = with.with(skew);
   const ModelFit fit = settle(diagnosis.store(), with);
   if (!fit.ok) return {};

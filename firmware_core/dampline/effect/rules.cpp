@@ -28,6 +28,13 @@ constexpr double kFaintFrictionGain = 0.0015;  // with kFaintFrictionT and kFain
 constexpr double kFaintFrictionT = 1.5;
 constexpr double kFaintFrictionZ = 12.0;
 
+template <class Test>
+bool has_any(const Model& model, const Test& test) noexcept {
+  const auto end = model.effect.begin() + static_cast<std::ptrdiff_t>(model.count);
+  return std::any_of(model.effect.begin(), end,
+                     [&](const Candidate& candidate) { return test(candidate.effect); });
+}
+
 bool is_even_spring(Effect effect) noexcept {
   return effect == Effect::kQuadraticStiffness || effect == Effect::kAsymmetricStiffness;
 }
@@ -63,13 +70,8 @@ double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept
 /// Friction that builds up to a level which itself grows with the deflection: the model has their
 /// sum, and what their product adds to it is even in the deflection.
 bool lacks_product(const Model& model) noexcept {
-  bool memory = false;
-  bool progressive = false;
-  for (std::size_t i = 0; i < model.count; ++i) {
-    memory = memory || has_memory(model.effect[i].effect);
-    progressive = progressive || model.effect[i].effect == Effect::kProgressiveFriction;
-  }
-  return memory && progressive;
+  return has_any(model, has_memory) &&
+         has_any(model, [](Effect effect) { return effect == Effect::kProgressiveFriction; });
 }
 
 double later_gain(const Model& model, const Candidate& candidate) noexcept {
@@ -83,10 +85,7 @@ double later_gain(const Model& model, const Candidate& candidate) noexcept {
 /// What the grid of lengths and the velocity's phase leave of a law with memory looks like a late
 /// frame, and other effects may be less than that.
 bool is_late_memory(const Model& model, Effect effect) noexcept {
-  if (effect != Effect::kTimeSkew) return false;
-  for (std::size_t i = 0; i < model.count; ++i)
-    if (has_memory(model.effect[i].effect)) return true;
-  return false;
+  return effect == Effect::kTimeSkew && has_any(model, has_memory);
 }
 
 bool passes_later(const Step& step, double gain) noexcept {

@@ -73,21 +73,19 @@ bool TimingWatch::jumped(std::int64_t tick) const noexcept {
 // there were no good, the wheelsets' difference tells.
 bool TimingWatch::sudden(std::int64_t tick, double size_s) const noexcept {
   const std::size_t held = std::min(segment_count_, kSegments);
+  const auto segment = [&](std::size_t back) -> const Segment& {
+    return segments_[(segment_count_ - 1 - back) % kSegments];
+  };
   const auto delay = [&](std::size_t back) {
-    const auto at = [&](std::size_t b) {
-      return segments_[(segment_count_ - 1 - b) % kSegments].delay_s;
-    };
-    return middle_of(at(back - 1), at(back), at(back + 1));
+    return middle_of(segment(back - 1).delay_s, segment(back).delay_s, segment(back + 1).delay_s);
   };
   if (jumped(tick)) return true;
   const auto reach = static_cast<std::int64_t>(kReachS * rate_hz_);
   double largest = 0.0;
   for (std::size_t back = 1; back + kSuddenHops + 2 < held; ++back) {
-    const auto tick_of = [&](std::size_t b) {
-      return segments_[(segment_count_ - 1 - b) % kSegments].tick;
-    };
-    if (std::abs(tick_of(back) - tick) > reach) continue;
-    const auto span = static_cast<double>(tick_of(back - 1) - tick_of(back + kSuddenHops + 1));
+    if (std::abs(segment(back).tick - tick) > reach) continue;
+    const auto span =
+        static_cast<double>(segment(back - 1).tick - segment(back + kSuddenHops + 1).tick);
     if (span > kNoGapS * rate_hz_) continue;
     largest = std::max(largest, std::abs(delay(back) - delay(back + kSuddenHops)));
   }
