@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/wavelet/oscillator_accuracy.hpp"
+#include "app/verify/oscillator/accuracy.hpp"
 
 namespace {
 

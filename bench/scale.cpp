@@ -18,7 +18,7 @@
 #include "bench/fleet.hpp"
 #include "bench/peers/rows.hpp"
 #include "bench/ride.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
+#include "published/wavelet/estimates.hpp"
 
 namespace dampline::bench {
 namespace {

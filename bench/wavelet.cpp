@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "published/wavelet/coarse_rows.hpp"
-#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/estimates.hpp"
 #include "published/wavelet/model_selection.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
 
 namespace dampline {
 namespace {

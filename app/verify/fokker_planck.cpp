@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/verify/fokker_planck.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "app/error.hpp"
 #include "app/verify/fokker_planck_cases.hpp"
+#include "app/verify/subjects.hpp"
 
 namespace dampline::app {
 namespace {
@@ -18,19 +17,12 @@ const char* standing(const FokkerPlanckFigure& figure) {
   return figure.met ? "met" : "MISSED";
 }
 
-/// With the bars of magnitudes escaped, which would end a cell.
-std::string cell(std::string text) {
-  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
-    text.insert(at, 1, '\\');
-  return text;
-}
-
 void print_figures(const FokkerPlanckCases& cases, bool markdown) {
   if (markdown) fmt::print("| figure | published | computed | | |\n|--|--|--|--|--|\n");
   for (const FokkerPlanckFigure& f : cases.figures) {
     if (markdown) {
-      fmt::print("| {} | {} | {} | {} | {} |\n", cell(f.quantity), f.published, f.computed,
-                 standing(f), cell(f.remark));
+      fmt::print("| {} | {} | {} | {} | {} |\n", markdown_cell(f.quantity), f.published, f.computed,
+                 standing(f), markdown_cell(f.remark));
     } else {
       fmt::print("{:<62} published {:>18}   computed {:>20}  {}\n    {}\n", f.quantity, f.published,
                  f.computed, standing(f), f.remark);
@@ -82,11 +74,6 @@ nlohmann::json json_of(const PaperTable& table) {
   return {{"table", table.name}, {"caption", table.caption}, {"rows", rows}};
 }
 
-bool wanted(const VerifyOptions& options, const std::string& name) {
-  return options.tables.empty() ||
-         std::find(options.tables.begin(), options.tables.end(), name) != options.tables.end();
-}
-
 void print_json(const FokkerPlanckCases& cases, const VerifyOptions& options) {
   nlohmann::json out{{"subject", "fokker-planck"}};
   out["figures"] = nlohmann::json::array();
@@ -100,7 +87,7 @@ void print_json(const FokkerPlanckCases& cases, const VerifyOptions& options) {
   }
   out["tables"] = nlohmann::json::array();
   for (const PaperTable& table : cases.tables) {
-    if (wanted(options, table.name)) out["tables"].push_back(json_of(table));
+    if (options.wants(table.name)) out["tables"].push_back(json_of(table));
   }
   fmt::print("{}\n", out.dump(2));
 }
@@ -120,7 +107,7 @@ int verify_fokker_planck(const VerifyOptions& options) {
   } else if (!options.quiet) {
     if (options.tables.empty()) print_figures(cases, options.markdown);
     for (const PaperTable& table : cases.tables) {
-      if (wanted(options, table.name)) print_table(table, options.markdown);
+      if (options.wants(table.name)) print_table(table, options.markdown);
     }
   }
   const bool met = std::all_of(cases.figures.begin(), cases.figures.end(),

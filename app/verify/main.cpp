@@ -7,13 +7,16 @@
 #include <vector>
 
 #include "app/program.hpp"
-#include "app/verify/fokker_planck.hpp"
-#include "app/verify/phase.hpp"
-#include "app/verify/subject.hpp"
-#include "app/verify/wavelet.hpp"
+#include "app/verify/subjects.hpp"
 
 namespace dampline::app {
 namespace {
+
+struct VerifySubject {
+  const char* name;
+  const char* meaning;  ///< for --help
+  int (*run)(const VerifyOptions&);
+};
 
 /// Every subject has one line here.
 const std::vector<VerifySubject>& subjects() {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "bench/peers/rows.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
+#include "published/wavelet/estimates.hpp"
 
 #ifdef DAMPLINE_HAS_DLIB
 #include <dlib/svm.h>

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "app/verify/fokker_planck.hpp"
 #include "app/verify/fokker_planck_cases.hpp"
+#include "app/verify/subjects.hpp"
 
 namespace dampline::app {
 namespace {

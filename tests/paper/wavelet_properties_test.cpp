@@ -8,10 +8,9 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "app/verify/wavelet.hpp"
-#include "app/verify/wavelet/oscillator_accuracy.hpp"
+#include "app/verify/oscillator/accuracy.hpp"
+#include "app/verify/subjects.hpp"
 #include "app/verify/wavelet/properties.hpp"
-#include "app/verify/wavelet/selection.hpp"
 
 namespace dampline::app {
 namespace {

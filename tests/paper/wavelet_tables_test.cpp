@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/verify/wavelet/case_results.hpp"
+#include "app/verify/wavelet/results.hpp"
 
 namespace dampline::app {
 namespace {

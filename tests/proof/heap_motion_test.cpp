@@ -6,10 +6,8 @@
 #include <memory>
 
 #include "published/wavelet/coarse_rows.hpp"
-#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/estimates.hpp"
 #include "published/wavelet/model_selection.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
-#include "published/wavelet/sequential_windows.hpp"
 #include "tests/proof/heap_hook.hpp"
 
 namespace dampline::proof {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "app/verify/oscillator/accelerometer_run.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "app/verify/oscillator/simulated.hpp"
 
 namespace dampline::sim {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "published/oscillator/flat_integral.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "published/oscillator/drift_free_window.hpp"
 
 namespace dampline {
 namespace {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "published/phase/friction_law.hpp"
 #include "sim_hw/noise.hpp"
 #include "tests/published/sections.hpp"
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/verify/phase/friction_oscillator.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "app/verify/phase/section_sweep.hpp"
+#include "app/verify/phase/simulated.hpp"
 
 namespace dampline {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "published/oscillator/gram_polynomials.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "published/oscillator/drift_free_window.hpp"
 
 namespace dampline {
 namespace {

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "published/wavelet/factor_ring.hpp"
+#include "published/wavelet/estimates.hpp"
 #include "published/wavelet/motion_rows.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
-#include "published/wavelet/sequential_windows.hpp"
 #include "tests/published/prescribed_motion.hpp"
 
 namespace dampline {

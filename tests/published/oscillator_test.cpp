@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/verify/oscillator/oscillator.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "app/verify/oscillator/simulated.hpp"
 
 namespace dampline::sim {
 namespace {

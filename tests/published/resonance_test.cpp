@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "app/verify/phase/section_sweep.hpp"
+#include "app/verify/phase/simulated.hpp"
 
 namespace dampline {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 
-#include "app/verify/oscillator/accelerometer_run.hpp"
-#include "published/oscillator/oscillator_identifier.hpp"
+#include "app/verify/oscillator/simulated.hpp"
+#include "published/oscillator/identifier.hpp"
 #include "published/wavelet/terms.hpp"
 
 namespace dampline {

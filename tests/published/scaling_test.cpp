@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/verify/phase/section_sweep.hpp"
+#include "app/verify/phase/simulated.hpp"
 
 namespace dampline {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/verify/phase/section_sweep.hpp"
+#include "app/verify/phase/simulated.hpp"
 #include "published/phase/friction_map.hpp"
 #include "published/phase/planarity.hpp"
 

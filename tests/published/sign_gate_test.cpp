@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "published/wavelet/sign_gate.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "published/wavelet/stencil.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "published/wavelet/motion_rows.hpp"
 
 namespace dampline {
 namespace {

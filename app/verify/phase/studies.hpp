@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/verify/phase/section_sweep.hpp"
-#include "published/phase/friction_law.hpp"
+#include "app/verify/phase/simulated.hpp"
 #include "published/phase/friction_map.hpp"
 #include "published/phase/planarity.hpp"
 #include "published/phase/resonance.hpp"

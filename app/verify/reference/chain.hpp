@@ -4,10 +4,18 @@
 #include <vector>
 
 #include "app/verify/reference/element.hpp"
-#include "app/verify/reference/input.hpp"
-#include "app/verify/reference/trajectory.hpp"
 
 namespace dampline::sim::reference {
+
+/// Motion and input of a system, sampled every `step_s` from time 0, without measuring error.
+/// Outer index: degree of freedom; inner index: sample. All inner vectors have the same length.
+struct Trajectory {
+  double step_s{0.0};
+  std::vector<std::vector<double>> deflection_m;
+  std::vector<std::vector<double>> velocity_mps;
+  std::vector<std::vector<double>> accel_mps2;
+  std::vector<std::vector<double>> force_n;  ///< the input, not the restoring force
+};
 
 /// An element and what it joins: mass `to` to the ground, or to mass `from`.
 struct Link {

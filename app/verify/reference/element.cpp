@@ -5,6 +5,7 @@
 #include <numbers>
 
 namespace dampline::sim::reference {
+
 namespace {
 
 constexpr Real kHalfPi = std::numbers::pi_v<Real> / 2;
@@ -54,6 +55,15 @@ Real friction_force(const Element& element, Branch branch, Real z, Real v) noexc
       return size * signum(element.signum, element.sharpness_spm, v);
   }
   return 0;
+}
+
+Real force_n(const Input& input, Real time_s) noexcept {
+  Real sum = 0;
+  for (const Sine& sine : input) {
+    const Real phase = (sine.rate_radps + 0.5L * sine.slope_radps2 * time_s) * time_s;
+    sum += sine.amplitude_n * std::sin(phase);
+  }
+  return sum;
 }
 
 }  // namespace dampline::sim::reference

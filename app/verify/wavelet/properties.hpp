@@ -17,4 +17,9 @@ namespace dampline::app {
 /// over so many seeds.
 [[nodiscard]] std::vector<CheckGroup> accelerometers_alone(int seeds);
 
+/// Table 17: one degree of freedom, the true, the linear and a model of seven terms.
+[[nodiscard]] std::vector<CheckGroup> single_selection();
+/// Table 18: the chain of two masses, ten terms.
+[[nodiscard]] std::vector<CheckGroup> chain_selection();
+
 }  // namespace dampline::app

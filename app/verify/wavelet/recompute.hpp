@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/wavelet/cases.hpp"
 #include "app/verify/wavelet/figures.hpp"
-#include "app/verify/wavelet/published_case.hpp"
 #include "app/verify/wavelet/rows.hpp"
 #include "published/wavelet/daubechies.hpp"
-#include "published/wavelet/recursive_estimate.hpp"
-#include "published/wavelet/sequential_windows.hpp"
+#include "published/wavelet/estimates.hpp"
 
 namespace dampline::app {
 

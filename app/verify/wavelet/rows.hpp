@@ -3,11 +3,29 @@
 #include <cstddef>
 #include <vector>
 
+#include "app/verify/reference/chain.hpp"
 #include "app/verify/reference/cooper_verner.hpp"
-#include "app/verify/reference/trajectory.hpp"
+#include "published/wavelet/models.hpp"
 #include "published/wavelet/motion_rows.hpp"
 
+/// The models of the published cases, from the core's vocabulary.
 namespace dampline::app {
+
+using LinearTerms = TermList<Viscous, Spring>;
+using ProductTerms = TermList<Viscous, Spring, Power<1, 1>>;
+using DuffingTerms = TermList<Viscous, Spring, CubicSpring>;
+using VanDerPolTerms = TermList<Viscous, Spring, VanDerPolDamper>;
+using BothTerms = TermList<Viscous, Spring, CubicSpring, VanDerPolDamper>;
+template <class Sign>
+using CoulombTerms = TermList<Viscous, Spring, Friction<Sign>>;
+using LinearCoulombTerms = TermList<Viscous, Spring, Friction<>, ProgressiveFriction<>>;
+using TeflonTerms = TermList<Viscous, Spring, Friction<TanhSign>, ExponentialFriction<TanhSign>>;
+
+/// The over-specified models of tables 17 and 18: seven terms, and five per element.
+template <class Sign>
+using SevenTerms = TermList<Viscous, Spring, CubicSpring, VanDerPolDamper, Power<2, 0>, Power<0, 2>,
+                            Friction<Sign>>;
+using FiveTerms = TermList<Viscous, Spring, CubicSpring, VanDerPolDamper, Friction<TanhSign>>;
 
 /// Least pivot of a column that still counts as determined: noiseless windows are short and smooth.
 inline constexpr double kLeastPivot = 1e-14;

@@ -1,24 +1,80 @@
 // SPDX-License-Identifier: MIT
-#include "app/verify/wavelet.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/error.hpp"
+#include "app/verify/subjects.hpp"
+#include "app/verify/wavelet/figures.hpp"
 #include "app/verify/wavelet/print.hpp"
-#include "app/verify/wavelet/tasks.hpp"
+#include "app/verify/wavelet/properties.hpp"
+#include "app/verify/wavelet/results.hpp"
 
 namespace dampline::app {
 namespace {
 
-bool wanted(const std::vector<std::string>& tables, const std::vector<std::string>& asked) {
-  return asked.empty() || std::any_of(tables.begin(), tables.end(), [&](const std::string& table) {
-           return std::find(asked.begin(), asked.end(), table) != asked.end();
-         });
+/// A case to recompute, known by the tables that it appears in.
+struct CaseTask {
+  std::vector<std::string> tables;
+  std::function<CaseFigures()> run;
+};
+
+struct GroupTask {
+  std::vector<std::string> tables;
+  std::function<std::vector<CheckGroup>()> run;
+};
+
+/// Tables 1, 3 to 6 and 8 to 16; "signs" and "noise" beside them.
+const std::vector<CaseTask>& case_tasks() {
+  static const std::vector<CaseTask> all{
+      {{"1"}, product_result},
+      {{"1"}, product_by_omega_result},
+      {{"3"}, [] { return duffing_result(true); }},
+      {{"3", "4"}, [] { return van_der_pol_result(true); }},
+      {{"5"}, [] { return duffing_result(false); }},
+      {{"5", "6"}, [] { return van_der_pol_result(false); }},
+      {{"8"}, [] { return duffing_chain_result(true); }},
+      {{"9"}, [] { return van_der_pol_chain_result(true); }},
+      {{"10"}, [] { return duffing_chain_result(false); }},
+      {{"11"}, [] { return van_der_pol_chain_result(false); }},
+      {{"12"}, coulomb_free_result},
+      {{"13"}, coulomb_forced_result},
+      {{"13"}, coulomb_tanh_result},
+      {{"14"}, coulomb_chain_result},
+      {{"15"}, [] { return linear_coulomb_result(1.2, 5); }},
+      {{"15"}, [] { return linear_coulomb_result(1.2, 10); }},
+      {{"15"}, [] { return linear_coulomb_result(0.6, 5); }},
+      {{"15"}, [] { return linear_coulomb_result(0.6, 10); }},
+      {{"16"}, teflon_result},
+      {{"signs"}, coulomb_erf_result},
+      {{"signs"}, coulomb_arctangent_result},
+      {{"signs"}, coulomb_rational_result},
+      {{"noise"}, quantised_duffing_result},
+  };
+  return all;
+}
+
+constexpr int kSeeds = 20;
+
+/// Tables 17 and 18; "step", "precision" and "accelerometers" beside them.
+const std::vector<GroupTask>& group_tasks() {
+  static const std::vector<GroupTask> all{
+      {{"17"}, single_selection},
+      {{"18"}, chain_selection},
+      {{"step"}, stiffness_drop},
+      {{"precision"}, recursive_against_batch},
+      {{"accelerometers"}, [] { return accelerometers_alone(kSeeds); }}};
+  return all;
+}
+
+bool wanted(const VerifyOptions& options, const std::vector<std::string>& tables) {
+  return std::any_of(tables.begin(), tables.end(),
+                     [&](const std::string& table) { return options.wants(table); });
 }
 
 void check_tables(const std::vector<std::string>& asked) {
@@ -43,15 +99,15 @@ void print_now(const std::string& text) {
 }
 
 /// All figures; with `as_text`, each is printed as soon as it is there.
-WaveletFigures recompute_all(const std::vector<std::string>& asked, bool as_text) {
+WaveletFigures recompute_all(const VerifyOptions& options, bool as_text) {
   WaveletFigures out;
   for (const CaseTask& task : case_tasks()) {
-    if (!wanted(task.tables, asked)) continue;
+    if (!wanted(options, task.tables)) continue;
     out.cases.push_back(task.run());
     if (as_text) print_now(text_of(out.cases.back()));
   }
   for (const GroupTask& task : group_tasks()) {
-    if (!wanted(task.tables, asked)) continue;
+    if (!wanted(options, task.tables)) continue;
     for (const CheckGroup& group : task.run()) {
       out.groups.push_back(group);
       if (as_text) print_now(text_of(group));
@@ -73,7 +129,7 @@ int verify_wavelet(const VerifyOptions& options) {
   check_tables(options.tables);
   const bool as_text = !options.json && !options.markdown && !options.quiet;
   if (as_text) print_now(kIntroduction);
-  const WaveletFigures figures = recompute_all(options.tables, as_text);
+  const WaveletFigures figures = recompute_all(options, as_text);
   const Tally count = tally(figures);
   if (as_text) {
     fmt::print("\n{} of {} bounds met\n", count.met, count.bound);

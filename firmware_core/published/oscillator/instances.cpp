@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The identifier of the two widest models, compiled into the library, so that what is proved of the
 // library's code is proved of it.
-#include "published/oscillator/oscillator_identifier.hpp"
+#include "published/oscillator/identifier.hpp"
 
 namespace dampline {
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace dampline::app {
+
+struct VerifyOptions {
+  bool json{false};                   ///< the figures as data
+  bool markdown{false};               ///< the figures as Markdown tables
+  bool quiet{false};                  ///< nothing on standard output; the exit code tells
+  std::vector<std::string> tables{};  ///< only these tables of the publication; empty: all
+
+  [[nodiscard]] bool wants(const std::string& table) const {
+    return tables.empty() || std::find(tables.begin(), tables.end(), table) != tables.end();
+  }
+};
+
+// The published methods whose cases `dampline verify` recomputes and prints: 0 when every promised
+// figure is met, otherwise 1. They throw UsageError for a table that the publication does not have.
+
+/// Kisilowski and Urbanski (1987).
+int verify_fokker_planck(const VerifyOptions& options);
+/// The resonances, sections and friction of the phase-mapping literature. Tables: resonance,
+/// planarity, linearity, friction.
+int verify_phase(const VerifyOptions& options);
+/// Ghanem and Romeo (2001).
+int verify_wavelet(const VerifyOptions& options);
+
+/// Text of a cell of a Markdown table: the bars of magnitudes would end it.
+[[nodiscard]] inline std::string markdown_cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+    text.insert(at, 1, '\\');
+  return text;
+}
+
+}  // namespace dampline::app
