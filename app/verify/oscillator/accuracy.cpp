@@ -5,11 +5,79 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "app/verify/wavelet/properties.hpp"
 
 namespace dampline::app {
 namespace {
+
+/// Damping ratio 0.1. The other terms are such that they matter alike at every frequency and level:
+/// at a deflection x0 = a_rms / w^2 the cubic spring adds a tenth to the stiffness and the friction
+/// that grows with deflection is 0.15 k; constant friction is a fifth (or, beside that, an eighth)
+/// of the rms acceleration; the Van der Pol damper turns from driving to damping at 0.58 x0.
+sim::OscillatorConfig oscillator(System system, double frequency_hz, double rms_mps2) {
+  const double w = 2.0 * std::numbers::pi * frequency_hz;
+  const double x0 = rms_mps2 / (w * w);
+  sim::OscillatorConfig config;
+  config.viscous_ps = 0.2 * w;
+  config.stiffness_ps2 = w * w;
+  switch (system) {
+    case System::kLinear:
+      break;
+    case System::kDuffing:
+      config.cubic_stiffness_pm2s2 = 0.1 * w * w / (x0 * x0);
+      break;
+    case System::kVanDerPol:
+      config.viscous_ps = -0.1 * w;
+      config.quadratic_viscous_pm2s = 0.3 * w / (x0 * x0);
+      break;
+    case System::kCoulomb:
+      config.coulomb_mps2 = 0.2 * rms_mps2;
+      break;
+    case System::kLinearCoulomb:
+      config.coulomb_mps2 = 0.125 * rms_mps2;
+      config.coulomb_slope_ps2 = 0.15 * w * w;
+      break;
+  }
+  return config;
+}
+
+struct Truth {
+  std::string name;
+  double value;
+  double demanded;  ///< relative rms error at 3 Hz and 0.25 g
+};
+
+std::vector<Truth> truths(System system, const sim::OscillatorConfig& c) {
+  const double viscous = system == System::kLinear || system == System::kDuffing ? 0.002 : 0.01;
+  std::vector<Truth> out{{"c", c.viscous_ps, viscous}, {"k", c.stiffness_ps2, 0.001}};
+  if (system == System::kDuffing) out.push_back({"k3", c.cubic_stiffness_pm2s2, 0.003});
+  if (system == System::kVanDerPol) out.push_back({"c3", c.quadratic_viscous_pm2s, 0.003});
+  if (system == System::kCoulomb) out.push_back({"F", c.coulomb_mps2, 0.003});
+  if (system == System::kLinearCoulomb) {
+    out.push_back({"F", c.coulomb_mps2, 0.01});
+    out.push_back({"fk", c.coulomb_slope_ps2, 0.005});
+  }
+  return out;
+}
+
+/// By a model of the system's own terms.
+Found identify_own(System system, const sim::AccelerometerRun& run) {
+  switch (system) {
+    case System::kLinear:
+      return identify_oscillator<LinearTerms>(run);
+    case System::kDuffing:
+      return identify_oscillator<DuffingTerms>(run);
+    case System::kVanDerPol:
+      return identify_oscillator<VanDerPolTerms>(run);
+    case System::kCoulomb:
+      return identify_oscillator<CoulombTerms<ExactSign>>(run);
+    case System::kLinearCoulomb:
+      return identify_oscillator<LinearCoulombTerms>(run);
+  }
+  return {};
+}
 
 /// Sums over seeds, of one parameter.
 struct Sums {
@@ -58,7 +126,7 @@ OscillatorAccuracy accuracy_of(const OscillatorCondition& condition, System syst
   for (int i = 0; i < seeds.count; ++i) {
     config.seed = seeds.first + static_cast<std::uint64_t>(i);
     const auto run = sim::run_accelerometers(config);
-    const Found found = identify_oscillator(system, run);
+    const Found found = identify_own(system, run);
     out.rms_g += run.mass_rms_mps2 / kGravityMps2 / seeds.count;
     out.blocks += static_cast<double>(found.blocks) / seeds.count;
     out.excluded += found.excluded;

@@ -145,20 +145,18 @@ PhaseRow share_row(const char* table, const std::string& what, int hits, int run
 }
 
 int right_by_sections(const System& s, double noise, int runs) {
+  const auto wanted = s.linear ? PlanarityState::kLinear : PlanarityState::kNonlinear;
   int right = 0;
-  for (int run = 0; run < runs; ++run) {
-    const PlanarityState state = study_planarity(s.law, noise, seed(run)).state;
-    right += state == (s.linear ? PlanarityState::kLinear : PlanarityState::kNonlinear) ? 1 : 0;
-  }
+  for (int run = 0; run < runs; ++run)
+    right += study_planarity(s.law, noise, seed(run)).state == wanted ? 1 : 0;
   return right;
 }
 
 int right_by_scaling(const System& s, double noise, int runs) {
+  const auto wanted = s.linear ? ScalingState::kProportional : ScalingState::kDisproportional;
   int right = 0;
-  for (int run = 0; run < runs; ++run) {
-    const ScalingState state = study_scaling(s.law, noise, seed(run)).state;
-    right += state == (s.linear ? ScalingState::kProportional : ScalingState::kDisproportional);
-  }
+  for (int run = 0; run < runs; ++run)
+    right += study_scaling(s.law, noise, seed(run)).state == wanted ? 1 : 0;
   return right;
 }
 

@@ -14,6 +14,18 @@ namespace {
 constexpr int kHalvings = 60;     // locates an event to rounding
 constexpr int kMaxEvents = 1000;  // of one step
 
+/// Where `holds` begins, given that it holds at `length_s` and not at 0.
+template <class Predicate>
+double first_place(double length_s, const Predicate& holds) {
+  double inside = 0.0;
+  double outside = length_s;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (holds(middle) ? outside : inside) = middle;
+  }
+  return outside;
+}
+
 double sign_of(double x) { return x > 0.0 ? 1.0 : -1.0; }
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -120,12 +132,8 @@ double FrictionOscillator::slip(double length_s) {
     time_s_ += length_s;
     return length_s;
   }
-  double inside = 0.0;
-  double outside = length_s;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (leaves_mode(runge_kutta(middle)) ? outside : inside) = middle;
-  }
+  const double outside =
+      first_place(length_s, [&](double s) { return leaves_mode(runge_kutta(s)); });
   const State last = runge_kutta(outside);
   const bool kink = law_.reversal_m != 0.0 && side_ * (1.0 + last.y / law_.reversal_m) < 0.0;
   const bool reversal = law_.creep_mps <= 0.0 && sign_ * last.v < 0.0;
@@ -145,12 +153,7 @@ double FrictionOscillator::stick(double length_s) {
     time_s_ += length_s;
     return length_s;
   }
-  double inside = 0.0;
-  double outside = length_s;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (breaks_loose(time_s_ + middle) ? outside : inside) = middle;
-  }
+  const double outside = first_place(length_s, [&](double s) { return breaks_loose(time_s_ + s); });
   time_s_ += outside;
   choose_sign();
   return outside;
