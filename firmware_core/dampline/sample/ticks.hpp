@@ -32,12 +32,6 @@ class TickLine {
            (static_cast<double>(time_ns - time_ns_) - phase_ns_) / period_ns_;
   }
 
-  /// False where tick_at(time_ns) is more than `ticks` after the tick of the latest update. May be
-  /// false a little before.
-  [[nodiscard]] bool is_near(std::int64_t time_ns, double ticks) const noexcept {
-    return static_cast<double>(time_ns - time_ns_) < ticks * shortest_ns_;
-  }
-
   /// Precondition: tick is larger than that of the update before.
   void update(std::int64_t tick, std::int64_t time_ns) noexcept {
     const auto steps = static_cast<double>(tick - tick_);
