@@ -4,13 +4,8 @@
 #include <string_view>
 
 #include "app/program.hpp"
-#include "app/run/run_toml.hpp"
-#include "app/verbs/config.hpp"
-#include "app/verbs/explain.hpp"
-#include "app/verbs/export.hpp"
-#include "app/verbs/identify.hpp"
-#include "app/verbs/report.hpp"
-#include "app/verbs/simulate.hpp"
+#include "app/run/provenance.hpp"
+#include "app/verbs/verbs.hpp"
 #include "app/verbs/verify.hpp"
 
 int main(int argc, char** argv) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/config/column.hpp"
+#include "app/config/columns.hpp"
 #include "dampline/sample.hpp"
 
 namespace dampline::app {

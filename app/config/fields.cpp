@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: MIT
 #include "app/config/fields.hpp"
 
-#include "app/config/effects.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {
 namespace {
+
+/// Names of the physical effects that a model may contain or lack.
+constexpr std::array<std::string_view, 21> kEffects{"viscous",
+                                                    "asymmetric_viscous",
+                                                    "quadratic_damping",
+                                                    "coulomb",
+                                                    "asymmetric_coulomb",
+                                                    "offset_force",
+                                                    "progressive_friction",
+                                                    "stribeck",
+                                                    "presliding_hysteresis",
+                                                    "backlash",
+                                                    "bump_stop",
+                                                    "cubic_stiffness",
+                                                    "quadratic_stiffness",
+                                                    "time_drift",
+                                                    "unmodelled_mode",
+                                                    "time_skew",
+                                                    "gain_error",
+                                                    "cross_axis",
+                                                    "asymmetric_stiffness",
+                                                    "impulsive_input",
+                                                    "all"};
 
 constexpr std::array<std::string_view, 3> kInertiaWords{"auto", "identify", "none"};
 constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "none"};

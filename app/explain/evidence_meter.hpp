@@ -8,7 +8,7 @@
 #include "app/explain/residual_maps.hpp"
 #include "app/explain/residual_spectrum.hpp"
 #include "app/explain/signature.hpp"
-#include "app/run/evidence.hpp"
+#include "app/run/result.hpp"
 
 namespace dampline::app {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "app/run/evidence.hpp"
+#include "app/run/result.hpp"
 
 namespace dampline::app {
 

@@ -8,7 +8,7 @@
 #include "app/explain/alignment.hpp"
 #include "app/explain/signature.hpp"
 #include "app/identify/sample_feed.hpp"
-#include "app/run/checksum.hpp"
+#include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
 #include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/judgement.hpp"

@@ -3,7 +3,8 @@
 
 #include "app/explain/explanation_json.hpp"
 #include "app/explain/truck_verdict.hpp"
-#include "app/text/quantity.hpp"
+#include "app/text/format.hpp"
+#include "app/text/summary.hpp"
 
 namespace dampline::app {
 namespace {

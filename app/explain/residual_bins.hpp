@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/explain/evidence_point.hpp"
-#include "app/run/evidence.hpp"
+#include "app/run/result.hpp"
 
 namespace dampline::app {
 

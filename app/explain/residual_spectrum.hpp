@@ -7,7 +7,7 @@
 
 #include "app/explain/evidence_point.hpp"
 #include "app/explain/signature.hpp"
-#include "app/run/evidence.hpp"
+#include "app/run/result.hpp"
 #include "dampline/numeric/fourier.hpp"
 
 namespace dampline::app {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/explain/evidence_point.hpp"
-#include "app/run/evidence.hpp"
+#include "app/run/result.hpp"
 #include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/diagnosis.hpp"
 

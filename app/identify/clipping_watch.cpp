@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "app/text/quantity.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {

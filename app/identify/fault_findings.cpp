@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/text/summary.hpp"
+
 namespace dampline::app {
 namespace {
 
@@ -61,9 +63,9 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
 }
 
 DriftFinding finding_of(const ParameterDrift& drift) {
-  return {name_of(drift.parameter), drift.step,
-          drift.time_s,             drift.interval_s,
-          drift.gain,               {100.0 * drift.change.value, 100.0 * drift.change.std}};
+  return {
+      name_of(drift.parameter), drift.step, drift.time_s,
+      drift.interval_s,         drift.gain, {100.0 * drift.change.value, 100.0 * drift.change.std}};
 }
 
 void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,

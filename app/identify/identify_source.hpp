@@ -13,7 +13,7 @@
 #include "app/identify/sample_feed.hpp"
 #include "app/identify/source_kind.hpp"
 #include "app/identify/truck_run.hpp"
-#include "app/run/checksum.hpp"
+#include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {

@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-#include "app/config/header_name.hpp"
+#include "app/config/columns.hpp"
 #include "app/error.hpp"
 #include "drivers/blackbox/shelf.hpp"
 #include "drivers/csv/reader.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/run/checksum.hpp"
+#include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
 #include "dampline/can_frame.hpp"
 #include "dampline/sample.hpp"

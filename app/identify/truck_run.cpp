@@ -10,8 +10,8 @@
 #include "app/identify/other_methods.hpp"
 #include "app/identify/record_rate.hpp"
 #include "app/identify/truck_result.hpp"
-#include "app/run/state_file.hpp"
-#include "app/text/quantity.hpp"
+#include "app/run/state.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {

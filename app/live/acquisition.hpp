@@ -6,10 +6,9 @@
 #include <memory>
 
 #include "app/identify/truck_run.hpp"
+#include "app/live/handover.hpp"
 #include "app/live/lateness.hpp"
-#include "app/live/latest.hpp"
-#include "app/live/realtime.hpp"
-#include "app/live/record_queue.hpp"
+#include "app/live/process.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_source.hpp"
 

@@ -1,19 +1,117 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "app/config/config.hpp"
-#include "app/live/condition.hpp"
-#include "app/live/edge_events.hpp"
-#include "app/live/lamp.hpp"
 #include "app/live/recorder.hpp"
 #include "hal/clock.hpp"
+#include "hal/digital_output.hpp"
 #include "hal/edge_source.hpp"
+#include "hal/event.hpp"
 
 namespace dampline::app {
+
+enum class LiveState : std::uint8_t;
+
+/// What a GPIO line tells.
+enum class LineKind : std::uint8_t {
+  kPulsePerSecond,  ///< a rising edge every second
+  kMarker,          ///< active while a measurement goes on
+  kWheel,           ///< a rising edge every revolution
+};
+
+/// Monotone.
+struct EdgeCounts {
+  std::uint64_t pulses{0};
+  std::uint64_t markers{0};  ///< switched on or off
+  std::uint64_t wheel_pulses{0};
+  std::uint64_t impossible{0};   ///< a second edge of one direction in a row
+  std::uint64_t implausible{0};  ///< a pulse per second that was not 1 s after the one before
+  std::uint64_t lost{0};         ///< known to be lost
+};
+
+/// Makes events of edges. Every edge that tells something becomes its event, an impossible one too:
+/// the event before it says that the one in between is missing.
+class EdgeEvents {
+ public:
+  /// How far a pulse may be off by the clock that stamps the frames.
+  static constexpr std::int64_t kPulseToleranceNs = 1'000'000;
+  static constexpr std::size_t kMostEvents = 3;  ///< of one edge
+
+  /// One kind for each line of the source, in its order.
+  explicit EdgeEvents(const std::vector<LineKind>& kinds);
+  /// The events of one edge, in their order. The view is good until the next call. A line that was
+  /// not declared gives none.
+  [[nodiscard]] std::span<const hal::Event> take(const hal::Edge& edge) noexcept;
+  [[nodiscard]] const EdgeCounts& counts() const noexcept { return counts_; }
+
+ private:
+  struct Line {
+    LineKind kind{LineKind::kPulsePerSecond};
+    bool pulsed{false};
+    std::int64_t pulse_ns{0};
+  };
+  void add(const hal::Edge& edge, hal::EventKind kind, std::int64_t value) noexcept;
+  void add_meaning(Line& line, const hal::Edge& edge) noexcept;
+  void judge_pulse(Line& line, const hal::Edge& edge) noexcept;
+
+  std::vector<Line> lines_;
+  std::array<hal::Event, kMostEvents> events_{};
+  std::size_t used_{0};
+  EdgeCounts counts_;
+};
+
+enum class LampState : std::uint8_t { kOff, kIdentifying, kDegraded, kFault };
+
+/// Whether the lamp is lit at that moment, so that a person tells the states apart at a glance:
+///   identifying  steady
+///   degraded     slow: 1 s on, 1 s off
+///   fault        quick: four times a second
+/// A lamp that is dark for more than a second says that the program does not run.
+[[nodiscard]] constexpr bool lamp_lit(LampState state, std::int64_t monotonic_ns) noexcept {
+  constexpr std::int64_t kSlowHalfNs = 1'000'000'000;
+  constexpr std::int64_t kQuickHalfNs = 125'000'000;
+  switch (state) {
+    case LampState::kOff:
+      return false;
+    case LampState::kIdentifying:
+      return true;
+    case LampState::kDegraded:
+      return monotonic_ns / kSlowHalfNs % 2 == 0;
+    case LampState::kFault:
+      return monotonic_ns / kQuickHalfNs % 2 == 0;
+  }
+  return false;
+}
+
+/// Drives the lamp, and only when it has to change. A lamp that fails is tried again once a second:
+/// it never stops the run.
+class StatusLamp {
+ public:
+  /// Null: there is no lamp, and nothing is done.
+  explicit StatusLamp(std::unique_ptr<hal::DigitalOutput> output) noexcept;
+  StatusLamp(const StatusLamp&) = delete;
+  StatusLamp& operator=(const StatusLamp&) = delete;
+  ~StatusLamp();  ///< switches it off
+  /// Call some times a second; every 60 ms or more often keeps the quick pattern even.
+  void show(LampState state, std::int64_t monotonic_ns) noexcept;
+  [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
+
+ private:
+  std::unique_ptr<hal::DigitalOutput> output_;
+  std::optional<bool> lit_;  // absent: not known
+  std::int64_t retry_ns_{0};
+  std::uint64_t failures_{0};
+};
 
 /// One line as [gpio] names it: "marker:4:active_low".
 struct LineSetting {

@@ -9,10 +9,9 @@
 #include "app/identify/identify_source.hpp"
 #include "app/live/acquisition.hpp"
 #include "app/live/live_explainer.hpp"
-#include "app/live/live_result.hpp"
-#include "app/live/monitor.hpp"
+#include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
-#include "app/live/signals.hpp"
+#include "app/live/status.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 

@@ -6,11 +6,22 @@
 #include <thread>
 
 #include "app/identify/event_list.hpp"
-#include "app/live/record_queue.hpp"
+#include "app/live/handover.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 
 namespace dampline::app {
+
+/// Where a run that keeps no black box writes its frames.
+class VoidSink final : public hal::RecordSink {
+ private:
+  void do_write(const CanFrame& /*frame*/) noexcept override {}
+  void do_write(const hal::Event& /*event*/) noexcept override {}
+  void do_tick(std::int64_t /*monotonic_ns*/) noexcept override {}
+  void do_rotate() noexcept override {}
+  void do_close() noexcept override {}
+  [[nodiscard]] hal::RecordHealth do_health() const noexcept override { return {}; }
+};
 
 /// The writer's thread: empties the rings of the acquisition and of the edges into the black box,
 /// and keeps the list of events. A slow disk delays only this thread.

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <map>
 
-#include "app/report/evidence.hpp"
-#include "app/report/faults.hpp"
 #include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
+#include "app/report/plots.hpp"
 #include "app/report/sections.hpp"
-#include "app/report/style.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {
@@ -156,6 +155,13 @@ Page make_page(const RunResult& result, const Provenance& provenance, const std:
                       "<h1>dampline: {0}</h1>\n{2}</body></html>\n",
                       escape_html(name), kPageStyle, body),
           artist.warning()};
+}
+
+void stage_report(const RunFiles& files, RunDirectory& directory) {
+  const Page page =
+      make_page(files.result, read_provenance(files.run_toml, "run.toml"), files.run_toml);
+  if (!page.warning.empty()) warn(page.warning);
+  directory.write("report.html", page.html);
 }
 
 }  // namespace dampline::app

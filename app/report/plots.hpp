@@ -2,17 +2,10 @@
 #pragma once
 #include <string>
 
+#include "app/report/gnuplot.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {
-
-/// gnuplot scripts with their data, to which the terminal is still to be set. Empty where the
-/// result has nothing to draw.
-struct PlotScript {
-  std::string script;
-  int width{960};
-  int height{420};
-};
 
 /// The damping curve with its band, and below it how many samples support each part.
 [[nodiscard]] PlotScript plot_curve(const RunResult& result);
@@ -32,5 +25,20 @@ struct PlotScript {
 [[nodiscard]] PlotScript plot_excluded(const RunResult& result);
 /// How late the frames of a live run were, with p50 to the largest written in.
 [[nodiscard]] PlotScript plot_lateness(const RunResult& result);
+/// One row per fault and channel over the whole record: what it spoils, and where it was seen.
+[[nodiscard]] PlotScript plot_faults(const RunResult& result);
+
+// Of an explanation.
+
+/// What is left before and after, over deflection, velocity, frequency and time.
+[[nodiscard]] PlotScript plot_residual(const Evidence& evidence);
+/// Force over velocity and over deflection: data, model before and after.
+[[nodiscard]] PlotScript plot_loops(const Evidence& evidence);
+/// The damping force in steady sliding, before and after.
+[[nodiscard]] PlotScript plot_law(const Evidence& evidence);
+/// Measured against predicted of the `record`-th record that was never fitted.
+[[nodiscard]] PlotScript plot_prediction(const Evidence& evidence, std::uint32_t record);
+/// How many of these records there are.
+[[nodiscard]] std::uint32_t predicted_records(const Evidence& evidence);
 
 }  // namespace dampline::app

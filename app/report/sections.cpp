@@ -7,8 +7,9 @@
 #include <map>
 
 #include "app/report/html.hpp"
-#include "app/text/meaning.hpp"
-#include "app/text/quantity.hpp"
+#include "app/report/phase_plot.hpp"
+#include "app/text/format.hpp"
+#include "app/text/summary.hpp"
 
 namespace dampline::app {
 namespace {
@@ -121,6 +122,141 @@ std::string provenance_section(const Provenance& provenance, const std::string& 
              "<p class=\"note\">dampline {}</p>\n<details><summary>Complete configuration "
              "(run.toml)</summary>\n<pre>{}</pre></details>\n",
              escape_html(provenance.version), escape_html(run_toml));
+}
+
+namespace {
+
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+std::string objections_of(const MethodSummary& method) {
+  std::string out;
+  for (const Objection& o : method.objections)
+    out += fmt::format("<li>{}: {}, limit {}</li>", escape_html(o.reason),
+                       escape_html(with_unit(o.size, o.unit)),
+                       escape_html(with_unit(o.limit, o.unit)));
+  return out.empty() ? "" : "<ul>" + out + "</ul>";
+}
+
+std::string level_of(const MethodSummary& method) {
+  if (!method.has_level) return "none";
+  const QuantityText text = format_quantity(method.level_n.value, method.level_n.std);
+  return fmt::format("{} ± {} N", text.value, text.std);
+}
+
+const Parameter* coulomb_of(const RunResult& result) {
+  for (const Parameter& p : result.parameters)
+    if (p.name == "coulomb") return &p;
+  return nullptr;
+}
+
+std::string difference(const MethodSummary& method, const Parameter* coulomb) {
+  if (!method.has_level || coulomb == nullptr || coulomb->value == 0.0) return "";
+  return fmt::format("{:+.1f} %", 100.0 * (method.level_n.value / coulomb->value - 1.0));
+}
+
+}  // namespace
+
+std::string method_section(const RunResult& result) {
+  if (result.methods.empty()) return "";
+  const Parameter* coulomb = coulomb_of(result);
+  std::string out =
+      "<table><tr><th>method</th><th class=\"number\">Coulomb level</th><th class=\"number\">"
+      "against the wavelet windows</th><th>to be trusted here</th></tr>\n";
+  for (const MethodSummary& m : result.methods)
+    out += fmt::format(
+        "<tr{}><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}{}</td>"
+        "</tr>\n",
+        m.trusted ? "" : " class=\"grey\"", escape_html(m.title), level_of(m),
+        difference(m, coulomb), m.trusted ? "yes" : "no", objections_of(m));
+  return out + "</table>\n";
+}
+
+namespace {
+
+std::string mebibytes(std::uint64_t bytes) {
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
+}
+
+}  // namespace
+
+std::string live_section(const RunResult& result) {
+  if (!result.live) return "";
+  const LiveFigures& f = *result.live;
+  const std::string lateness =
+      fmt::format("{} / {} / {} / {} / {}", format_microseconds(f.lateness_p50_us),
+                  format_microseconds(f.lateness_p90_us), format_microseconds(f.lateness_p99_us),
+                  format_microseconds(f.lateness_p999_us), format_microseconds(f.lateness_max_us));
+  std::vector<std::vector<std::string>> rows{
+      {"lateness", lateness,
+       "from a frame's stamp to its result: p50 / p90 / p99 / p99.9 / largest"},
+      {"cycle slips", format_count(f.cycle_slips),
+       "frames later than one sampling period; no result depends on it"},
+      {"page faults", fmt::format("{} + {}", f.minor_faults, f.major_faults),
+       "minor + major, of the acquisition after its warm-up"},
+      {"memory locked", f.memory_locked ? "yes" : "no", ""},
+      {"real-time scheduling", f.realtime_scheduled ? "yes" : "no", ""},
+      {"recorded", mebibytes(f.recorded_bytes), "in the black box"},
+      {"records lost", format_count(f.records_lost), "that the black box could not take"}};
+  if (f.first_sample_s)
+    rows.push_back({"first sample", fmt::format("{:.3f} s", *f.first_sample_s),
+                    "after the start of the program"});
+  return html_table({"", "", "meaning"}, rows, 1);
+}
+
+namespace {
+
+constexpr std::string_view kPhaseText =
+    "How often the motion passed each place of the extended phase space (y, y', y''), seen along "
+    "its three axes; the shade follows the root of the density. Points are stroboscopic (Poincare) "
+    "sections.";
+
+}  // namespace
+
+std::string phase_section(const RunResult& result) {
+  if (!result.phase) return "";
+  return fmt::format("<figure>\n{}\n<figcaption>{} {}</figcaption></figure>\n",
+                     plot_phase(*result.phase, "phase-planes"), kPhaseText,
+                     escape_html(describe_period(*result.phase)));
+}
+
+std::string fault_size(const FaultFinding& fault) {
+  return fault.unit == "-" ? "" : fmt::format("{:.4g} {}", fault.size, fault.unit);
+}
+
+std::string fault_section(const RunResult& result) {
+  if (result.kind != "truck") return "";
+  const DataFaults& faults = result.faults;
+  std::string out;
+  if (faults.list.empty()) {
+    out = "<p>No fault of a sensor or of the transport was found.</p>\n";
+  } else {
+    std::vector<std::vector<std::string>> rows;
+    for (const FaultFinding& f : faults.list)
+      rows.push_back({plot_label(f.name), f.channel, fmt::format("{:.1f} s", f.time_s),
+                      fmt::format("{:.1f} s", f.last_s), fault_size(f), format_count(f.count)});
+    out = html_table({"fault", "channel", "first seen", "last seen", "size", "times or blocks"},
+                     rows, 0);
+  }
+  if (faults.drift)
+    out +=
+        fmt::format("<p class=\"warning\">{}.</p>\n", escape_html(describe_drift(*faults.drift)));
+  for (const AlarmFinding& alarm : faults.alarms)
+    out += fmt::format("<p class=\"warning\">Alarm: {}.</p>\n", escape_html(describe_alarm(alarm)));
+  if (result.live)
+    out += fmt::format("<p class=\"note\">Live alarm: {}; {}.</p>\n",
+                       faults.alarms.empty() ? "none" : format_count(faults.alarms.size()),
+                       escape_html(describe_alarm_figures()));
+  if (faults.values_replaced + faults.samples_spoilt > 0)
+    out += fmt::format(
+        "<p class=\"note\">Because of these, {} single values were replaced by what their "
+        "neighbours say and {} samples left out.</p>\n",
+        format_count(faults.values_replaced), format_count(faults.samples_spoilt));
+  return out + fmt::format(
+                   "<p class=\"note\">Input, no faults: {} impacts (rail joints, wheel flats), {} "
+                   "changes of speed.</p>\n",
+                   format_count(faults.impacts), format_count(faults.speed_changes));
 }
 
 }  // namespace dampline::app

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
-#include "app/run/run_toml.hpp"
 
 namespace dampline::app {
 
@@ -21,5 +21,21 @@ namespace dampline::app {
 [[nodiscard]] std::string live_section(const RunResult& result);
 [[nodiscard]] std::string provenance_section(const Provenance& provenance,
                                              const std::string& run_toml);
+/// "12.5 m/s^2"; empty for a fault that has none.
+[[nodiscard]] std::string fault_size(const FaultFinding& fault);
+/// Faults with channel, time and size, inputs that are no faults, and a parameter that changed.
+/// Empty for a rig's record.
+[[nodiscard]] std::string fault_section(const RunResult& result);
+
+// Of an explanation.
+
+/// The verdict and the error before and after in one sentence.
+[[nodiscard]] std::string explanation_headline(const Evidence& evidence);
+/// Verdict, errors and what is left.
+[[nodiscard]] std::string verdict_section(const Evidence& evidence);
+/// Every candidate that was near: gain, significance, verdict.
+[[nodiscard]] std::string candidate_section(const Evidence& evidence);
+/// Errors on records that were never fitted.
+[[nodiscard]] std::string validation_section(const Evidence& evidence);
 
 }  // namespace dampline::app

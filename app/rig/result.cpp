@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "app/error.hpp"
-#include "app/text/quantity.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app::rig {
 namespace {

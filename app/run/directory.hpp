@@ -5,6 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "app/config/config.hpp"
+#include "app/run/provenance.hpp"
+#include "app/run/result.hpp"
+
 namespace dampline::app {
 
 /// Writes a file so that a reader sees the old content or the whole new content, and so that the
@@ -47,5 +51,19 @@ class RunDirectory {
 /// The first of STEM.run, STEM.run.2, STEM.run.3... in `folder` that does not exist.
 [[nodiscard]] std::filesystem::path free_run_name(const std::filesystem::path& folder,
                                                   const std::string& stem);
+
+/// What a run directory is made of beside report.html.
+struct RunFiles {
+  RunResult result;
+  std::string run_toml;
+  std::string state;  ///< state.dls; empty: there is none
+};
+
+/// Stages everything. Throws RunError.
+void stage_files(const RunFiles& files, RunDirectory& directory);
+
+/// Reads a run back for its report; the state stays where it is. Throws RunError naming the file
+/// that is missing or damaged.
+[[nodiscard]] RunFiles read_files(const std::filesystem::path& run);
 
 }  // namespace dampline::app

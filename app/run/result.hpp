@@ -1,19 +1,152 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "app/run/evidence.hpp"
-#include "app/run/faults.hpp"
-#include "app/run/methods.hpp"
 #include "dampline/phase/view.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {
+
+/// Something in the record that a method assumes and that does not hold.
+struct Objection {
+  std::string reason;  ///< a plain sentence
+  double size{0.0};    ///< of the violation
+  double limit{0.0};   ///< the most, or the least, that the method can stand
+  std::string unit;    ///< of both; empty: a pure number
+};
+
+/// What another method than the wavelet windows makes of the same record.
+struct MethodSummary {
+  std::string name;   ///< "fokker_planck_weak", ...: as in parameters.json and curve.csv
+  std::string title;  ///< for people
+  Estimate level_n;   ///< Coulomb level
+  bool has_level{false};
+  bool trusted{false};
+  std::vector<Objection> objections;
+  std::vector<Estimate> curve_n;  ///< at the velocities of RunResult::curve; NaN: no support
+};
+
+/// One bin of an online histogram.
+struct DensityRow {
+  double centre{0.0};
+  double density{0.0};  ///< per unit of the quantity
+  double samples{0.0};  ///< forgetting makes fractions of samples
+};
+
+/// Density of one quantity; its integral over the range is 1 - outside_share.
+struct DensityTable {
+  std::string quantity;  ///< with its unit: "deflection_m"
+  double outside_share{0.0};
+  std::vector<DensityRow> rows;
+};
+
+/// What a model leaves of the force, in one bin of what it is seen over.
+struct ResidualRow {
+  std::string over;   ///< "deflection_m", "velocity_mps", "frequency_hz", "time_s"
+  double place{0.0};  ///< centre of the bin
+  std::uint64_t samples{0};
+  double before_mean_n{0.0};  ///< base model; 0 over frequency
+  double before_rms_n{0.0};
+  double after_mean_n{0.0};  ///< final model
+  double after_rms_n{0.0};
+};
+
+/// One instant of an excerpt: the force that was measured, and both models' of it.
+struct LoopRow {
+  double time_s{0.0};
+  double deflection_m{0.0};
+  double velocity_mps{0.0};
+  double measured_n{0.0};
+  double base_n{0.0};
+  double final_n{0.0};
+};
+
+/// The damping force in steady sliding, undeflected.
+struct LawRow {
+  double velocity_mps{0.0};
+  double base_n{0.0};
+  double final_n{0.0};
+};
+
+/// One instant of a record that was never fitted.
+struct PredictedRow {
+  std::uint32_t record{1};
+  double time_s{0.0};
+  double measured_n{0.0};
+  double predicted_n{0.0};  ///< final model
+  double base_n{0.0};
+  double reference_n{std::numeric_limits<double>::quiet_NaN()};  ///< NaN: there is none
+};
+
+/// What the report of an explanation shows beside explanation.json.
+struct Evidence {
+  std::string explanation;  ///< explanation.json as text; empty: the run explained nothing
+  std::vector<ResidualRow> residual;
+  std::vector<LoopRow> loops;
+  std::vector<LawRow> law;
+  std::vector<PredictedRow> prediction;
+};
+
+/// A stretch of the record, in seconds from its beginning.
+struct Span {
+  double start_s{0.0};
+  double end_s{0.0};
+};
+
+/// A fault of sensor or transport, as parameters.json and the report name it.
+struct FaultFinding {
+  std::string name;     ///< "clipping", "lost_samples", ...
+  std::string channel;  ///< "frame", "wheelset1", "wheelset2", "wheelsets", "all"
+  double time_s{0.0};   ///< first seen, from the beginning of the record
+  double last_s{0.0};
+  double size{0.0};  ///< of several events the largest, of samples their sum
+  std::string unit;
+  std::uint64_t count{0};   ///< events, or blocks where it has no events
+  std::vector<Span> spans;  ///< seconds that it spoils; capped
+};
+
+/// A parameter that changed while the record was made.
+struct DriftFinding {
+  std::string parameter;    ///< "coulomb", "stiffness", "moving_mass"
+  bool step{false};         ///< at once; else slowly over the whole record
+  double time_s{0.0};       ///< of the step, in moving time
+  double interval_s{0.0};   ///< of uncertainty of that time
+  double gain{0.0};         ///< share of the held-out error that it explains
+  Estimate change_percent;  ///< after it, or at the end, against before
+};
+
+/// The live alarm: a parameter is not what it was when the watch began.
+struct AlarmFinding {
+  std::string parameter;  ///< "coulomb", "stiffness", "moving_mass"
+  double change_percent{0.0};
+  double since_s{0.0};  ///< from the beginning of the record
+  double time_s{0.0};   ///< when it was told
+};
+
+/// What the live alarm is worth, from simulated months in which weather moves friction by 2 % over
+/// a day and 1 % from day to day; `bench/months` measures it.
+struct AlarmFigures {
+  double false_alarms_per_1000_h{0.011};  ///< of motion: 2 in 180,000 h
+  double delay_s{240.0};                  ///< median, in motion, friction 10 % less at once
+  double delay_95_s{480.0};               ///< of 95 % of them
+};
+
+/// What the guards make of a record.
+struct DataFaults {
+  std::vector<FaultFinding> list;
+  std::uint64_t impacts{0};          ///< rail joints, wheel flats: input, not faults
+  std::uint64_t speed_changes{0};    ///< input, too
+  std::uint64_t values_replaced{0};  ///< single wrong samples, by what their neighbours say
+  std::uint64_t samples_spoilt{0};   ///< left out because of a fault that passed
+  std::optional<DriftFinding> drift;
+  std::vector<AlarmFinding> alarms;  ///< the newest
+};
 
 /// A named result with its unit; names as in parameters.json ("coulomb", "coulomb_positive", ...).
 struct Parameter {

@@ -3,10 +3,163 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <tuple>
+
 #include "app/error.hpp"
-#include "app/run/csv_text.hpp"
 
 namespace dampline::app {
+namespace {
+
+/// The cells of one line of a table that this program wrote.
+using Cells = std::vector<std::string_view>;
+
+std::string_view next_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+Cells split(std::string_view line) {
+  Cells cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t comma = std::min(line.find(',', begin), line.size());
+    cells.push_back(line.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return cells;
+}
+
+double number(std::string_view cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size())
+    throw RunError{fmt::format("\"{}\" is no number", cell)};
+  return value;
+}
+
+/// Calls `row` with the cells of each line after the header; returns the header's cells. Throws
+/// RunError naming `origin` and the line, also for what `row` throws.
+std::vector<std::string> read_rows(std::string_view text, const std::string& origin,
+                                   const std::function<void(const Cells&)>& row) {
+  const Cells header = split(next_line(text));
+  for (int line = 2; !text.empty(); ++line) {
+    const Cells cells = split(next_line(text));
+    try {
+      if (cells.size() != header.size())
+        throw RunError{fmt::format("{} cells, expected {}", cells.size(), header.size())};
+      row(cells);
+    } catch (const RunError& error) {
+      throw RunError{fmt::format("{}:{}: {}", origin, line, error.what())};
+    }
+  }
+  return {header.begin(), header.end()};
+}
+
+/// A table whose rows are plain structs: header, one line in the words of fmt, and where a row has
+/// each cell.
+template <class... Cell>
+struct Table {
+  std::string_view header;
+  std::string_view line;
+  std::tuple<Cell...> cells;
+};
+template <class... Cell>
+constexpr Table<Cell...> table(std::string_view header, std::string_view line, Cell... cells) {
+  return {header, line, {cells...}};
+}
+
+template <class Row>
+constexpr int kTable = 0;
+template <>
+constexpr auto kTable<ResidualRow> =
+    table("over,place,samples,before_mean_n,before_rms_n,after_mean_n,after_rms_n\n",
+          "{},{:.9g},{},{:.6g},{:.6g},{:.6g},{:.6g}\n", &ResidualRow::over, &ResidualRow::place,
+          &ResidualRow::samples, &ResidualRow::before_mean_n, &ResidualRow::before_rms_n,
+          &ResidualRow::after_mean_n, &ResidualRow::after_rms_n);
+template <>
+constexpr auto kTable<LoopRow> =
+    table("time_s,deflection_m,velocity_mps,measured_n,base_n,final_n\n",
+          "{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", &LoopRow::time_s, &LoopRow::deflection_m,
+          &LoopRow::velocity_mps, &LoopRow::measured_n, &LoopRow::base_n, &LoopRow::final_n);
+template <>
+constexpr auto kTable<LawRow> = table("velocity_mps,base_n,final_n\n", "{:.6g},{:.6g},{:.6g}\n",
+                                      &LawRow::velocity_mps, &LawRow::base_n, &LawRow::final_n);
+template <>
+constexpr auto kTable<MotionRow> = table("time_s,deflection_m,velocity_mps\n",
+                                         "{:.9g},{:.6g},{:.6g}\n", &MotionRow::time_s,
+                                         &MotionRow::deflection_m, &MotionRow::velocity_mps);
+template <>
+constexpr auto kTable<ForceRow> = table("time_s,velocity_mps,measured_n,fitted_n\n",
+                                        "{:.9g},{:.6g},{:.6g},{:.6g}\n", &ForceRow::time_s,
+                                        &ForceRow::velocity_mps, &ForceRow::measured_n,
+                                        &ForceRow::fitted_n);
+template <>
+constexpr auto kTable<Excluded> = table("start_s,end_s,reason\n", "{:.9g},{:.9g},{}\n",
+                                        &Excluded::start_s, &Excluded::end_s, &Excluded::reason);
+template <>
+constexpr auto kTable<RunEvent> = table("time_s,event,line,value\n", "{:.6f},{},{},{}\n",
+                                        &RunEvent::time_s, &RunEvent::name, &RunEvent::line,
+                                        &RunEvent::value);
+template <>
+constexpr auto kTable<LatenessRow> = table("from_us,to_us,frames\n", "{:.9g},{:.9g},{}\n",
+                                           &LatenessRow::from_us, &LatenessRow::to_us,
+                                           &LatenessRow::frames);
+
+template <class T>
+void read_cell(std::string_view cell, T& value) {
+  if constexpr (std::is_same_v<T, std::string>)
+    value = cell;
+  else
+    value = static_cast<T>(number(cell));
+}
+
+}  // namespace
+
+template <class Row>
+std::string to_csv(const std::vector<Row>& rows) {
+  std::string out{kTable<Row>.header};
+  for (const Row& row : rows)
+    std::apply(
+        [&](auto... cell) {
+          fmt::format_to(std::back_inserter(out), fmt::runtime(kTable<Row>.line), row.*cell...);
+        },
+        kTable<Row>.cells);
+  return out;
+}
+
+template <class Row>
+std::vector<Row> read_table(std::string_view text, const std::string& origin) {
+  std::vector<Row> out;
+  read_rows(text, origin, [&](const Cells& cells) {
+    Row& row = out.emplace_back();
+    std::size_t i = 0;
+    std::apply([&](auto... cell) { (read_cell(cells.at(i++), row.*cell), ...); },
+               kTable<Row>.cells);
+  });
+  return out;
+}
+
+template std::string to_csv(const std::vector<ResidualRow>&);
+template std::string to_csv(const std::vector<LoopRow>&);
+template std::string to_csv(const std::vector<LawRow>&);
+template std::string to_csv(const std::vector<MotionRow>&);
+template std::string to_csv(const std::vector<ForceRow>&);
+template std::string to_csv(const std::vector<Excluded>&);
+template std::string to_csv(const std::vector<RunEvent>&);
+template std::string to_csv(const std::vector<LatenessRow>&);
+template std::vector<ResidualRow> read_table(std::string_view, const std::string&);
+template std::vector<LoopRow> read_table(std::string_view, const std::string&);
+template std::vector<LawRow> read_table(std::string_view, const std::string&);
+template std::vector<MotionRow> read_table(std::string_view, const std::string&);
+template std::vector<ForceRow> read_table(std::string_view, const std::string&);
+template std::vector<Excluded> read_table(std::string_view, const std::string&);
+template std::vector<RunEvent> read_table(std::string_view, const std::string&);
+template std::vector<LatenessRow> read_table(std::string_view, const std::string&);
 
 std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodSummary>& methods) {
   std::string out = "velocity_mps,force_n,std_n,samples";
@@ -19,64 +172,6 @@ std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodS
       out += fmt::format(",{:.9g},{:.6g}", m.curve_n.at(i).value, m.curve_n.at(i).std);
     out += '\n';
   }
-  return out;
-}
-
-std::string to_csv(const std::vector<DensityTable>& densities) {
-  std::string out = "quantity,centre,density,samples,outside_share\n";
-  for (const DensityTable& table : densities)
-    for (const DensityRow& r : table.rows)
-      out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g}\n", table.quantity, r.centre, r.density,
-                         r.samples, table.outside_share);
-  return out;
-}
-
-std::string to_csv(const Convergence& convergence) {
-  std::string out = "time_s";
-  for (std::size_t i = 0; i < convergence.names.size(); ++i)
-    out += fmt::format(",{0} [{1}],{0}_std [{1}]", convergence.names[i], convergence.units[i]);
-  out += '\n';
-  for (const Convergence::Row& row : convergence.rows) {
-    out += fmt::format("{:.9g}", row.time_s);
-    for (const Estimate& e : row.estimates) out += fmt::format(",{:.9g},{:.6g}", e.value, e.std);
-    out += '\n';
-  }
-  return out;
-}
-
-std::string to_csv(const std::vector<MotionRow>& motion) {
-  std::string out = "time_s,deflection_m,velocity_mps\n";
-  for (const MotionRow& r : motion)
-    out += fmt::format("{:.9g},{:.6g},{:.6g}\n", r.time_s, r.deflection_m, r.velocity_mps);
-  return out;
-}
-
-std::string to_csv(const std::vector<ForceRow>& force) {
-  std::string out = "time_s,velocity_mps,measured_n,fitted_n\n";
-  for (const ForceRow& r : force)
-    out += fmt::format("{:.9g},{:.6g},{:.6g},{:.6g}\n", r.time_s, r.velocity_mps, r.measured_n,
-                       r.fitted_n);
-  return out;
-}
-
-std::string to_csv(const std::vector<Excluded>& excluded) {
-  std::string out = "start_s,end_s,reason\n";
-  for (const Excluded& r : excluded)
-    out += fmt::format("{:.9g},{:.9g},{}\n", r.start_s, r.end_s, r.reason);
-  return out;
-}
-
-std::string to_csv(const std::vector<RunEvent>& events) {
-  std::string out = "time_s,event,line,value\n";
-  for (const RunEvent& r : events)
-    out += fmt::format("{:.6f},{},{},{}\n", r.time_s, r.name, r.line, r.value);
-  return out;
-}
-
-std::string to_csv(const std::vector<LatenessRow>& lateness) {
-  std::string out = "from_us,to_us,frames\n";
-  for (const LatenessRow& r : lateness)
-    out += fmt::format("{:.9g},{:.9g},{}\n", r.from_us, r.to_us, r.frames);
   return out;
 }
 
@@ -95,6 +190,15 @@ void read_curve(std::string_view text, const std::string& origin, RunResult& res
   });
 }
 
+std::string to_csv(const std::vector<DensityTable>& densities) {
+  std::string out = "quantity,centre,density,samples,outside_share\n";
+  for (const DensityTable& table : densities)
+    for (const DensityRow& r : table.rows)
+      out += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g}\n", table.quantity, r.centre, r.density,
+                         r.samples, table.outside_share);
+  return out;
+}
+
 std::vector<DensityTable> read_densities(std::string_view text, const std::string& origin) {
   std::vector<DensityTable> densities;
   read_rows(text, origin, [&](const Cells& c) {
@@ -103,6 +207,19 @@ std::vector<DensityTable> read_densities(std::string_view text, const std::strin
     densities.back().rows.push_back({number(c.at(1)), number(c.at(2)), number(c.at(3))});
   });
   return densities;
+}
+
+std::string to_csv(const Convergence& convergence) {
+  std::string out = "time_s";
+  for (std::size_t i = 0; i < convergence.names.size(); ++i)
+    out += fmt::format(",{0} [{1}],{0}_std [{1}]", convergence.names[i], convergence.units[i]);
+  out += '\n';
+  for (const Convergence::Row& row : convergence.rows) {
+    out += fmt::format("{:.9g}", row.time_s);
+    for (const Estimate& e : row.estimates) out += fmt::format(",{:.9g},{:.6g}", e.value, e.std);
+    out += '\n';
+  }
+  return out;
 }
 
 Convergence read_convergence(std::string_view text, const std::string& origin) {
@@ -123,47 +240,32 @@ Convergence read_convergence(std::string_view text, const std::string& origin) {
   return convergence;
 }
 
-std::vector<MotionRow> read_motion(std::string_view text, const std::string& origin) {
-  std::vector<MotionRow> motion;
-  read_rows(text, origin, [&](const Cells& c) {
-    motion.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2))});
-  });
-  return motion;
+std::string to_csv(const std::vector<PredictedRow>& prediction) {
+  std::string out =
+      "record,time_s,measured_n,predicted_n,residual_n,base_predicted_n,reference_n\n";
+  for (const PredictedRow& r : prediction) {
+    fmt::format_to(std::back_inserter(out), "{},{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},", r.record,
+                   r.time_s, r.measured_n, r.predicted_n, r.measured_n - r.predicted_n, r.base_n);
+    if (std::isfinite(r.reference_n))
+      fmt::format_to(std::back_inserter(out), "{:.6g}", r.reference_n);
+    out += '\n';
+  }
+  return out;
 }
 
-std::vector<ForceRow> read_force(std::string_view text, const std::string& origin) {
-  std::vector<ForceRow> force;
+std::vector<PredictedRow> read_prediction(std::string_view text, const std::string& origin) {
+  std::vector<PredictedRow> out;
   read_rows(text, origin, [&](const Cells& c) {
-    force.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)), number(c.at(3))});
+    PredictedRow row;
+    row.record = static_cast<std::uint32_t>(number(c.at(0)));
+    row.time_s = number(c.at(1));
+    row.measured_n = number(c.at(2));
+    row.predicted_n = number(c.at(3));
+    row.base_n = number(c.at(5));
+    if (!c.at(6).empty()) row.reference_n = number(c.at(6));
+    out.push_back(row);
   });
-  return force;
-}
-
-std::vector<Excluded> read_excluded(std::string_view text, const std::string& origin) {
-  std::vector<Excluded> excluded;
-  read_rows(text, origin, [&](const Cells& c) {
-    excluded.push_back({number(c.at(0)), number(c.at(1)), std::string{c.at(2)}});
-  });
-  return excluded;
-}
-
-std::vector<RunEvent> read_events(std::string_view text, const std::string& origin) {
-  std::vector<RunEvent> events;
-  read_rows(text, origin, [&](const Cells& c) {
-    events.push_back({number(c.at(0)), std::string{c.at(1)},
-                      static_cast<std::uint64_t>(number(c.at(2))),
-                      static_cast<std::int64_t>(number(c.at(3)))});
-  });
-  return events;
-}
-
-std::vector<LatenessRow> read_lateness(std::string_view text, const std::string& origin) {
-  std::vector<LatenessRow> lateness;
-  read_rows(text, origin, [&](const Cells& c) {
-    lateness.push_back(
-        {number(c.at(0)), number(c.at(1)), static_cast<std::uint64_t>(number(c.at(2)))});
-  });
-  return lateness;
+  return out;
 }
 
 }  // namespace dampline::app

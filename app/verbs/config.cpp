@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/verbs/config.hpp"
+#include "app/config/config.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "app/config/config.hpp"
+#include "app/verbs/verbs.hpp"
 
 namespace dampline::app {
 

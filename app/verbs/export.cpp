@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/verbs/export.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +12,8 @@
 
 #include "app/error.hpp"
 #include "app/identify/event_list.hpp"
-#include "app/verbs/text_file.hpp"
+#include "app/verbs/output.hpp"
+#include "app/verbs/verbs.hpp"
 #include "drivers/blackbox/source.hpp"
 #include "drivers/candump/line.hpp"
 

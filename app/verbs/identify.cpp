@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/verbs/identify.hpp"
+#include "app/rig/identify.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,52 +9,165 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
+#include "app/diagnosis/rig/explain.hpp"
 #include "app/error.hpp"
+#include "app/explain/explain_truck.hpp"
+#include "app/explain/explanation_json.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/identify/recognised_columns.hpp"
 #include "app/identify/record_rate.hpp"
-#include "app/live/identify_live.hpp"
-#include "app/report/stage_report.hpp"
+#include "app/live/interface.hpp"
+#include "app/report/page.hpp"
+#include "app/rig/record.hpp"
 #include "app/run/directory.hpp"
-#include "app/run/files.hpp"
-#include "app/run/parameters_json.hpp"
-#include "app/run/run_toml.hpp"
+#include "app/run/json.hpp"
+#include "app/run/provenance.hpp"
 #include "app/text/summary.hpp"
+#include "app/verbs/verbs.hpp"
 
 namespace dampline::app {
 namespace {
 
-struct IdentifyFlags {
-  SourceOptions source;
+/// Of both verbs.
+struct RunFlags {
   std::string config;
-  std::string methods;
   std::string out;
   bool json{false};
   bool quiet{false};
   bool force{false};
   bool no_report{false};
+
+  /// Where the run goes that was made of `source`.
+  [[nodiscard]] std::filesystem::path place(const std::string& source) const {
+    if (!out.empty()) return out;
+    return free_run_name(std::filesystem::current_path(),
+                         source == "-" ? "stdin" : std::filesystem::path{source}.stem().string());
+  }
+  /// What the last line on the terminal names.
+  [[nodiscard]] std::string outcome(const std::filesystem::path& place) const {
+    return (no_report ? place : place / "report.html").string();
+  }
+  [[nodiscard]] bool show_progress() const { return !quiet && ::isatty(STDERR_FILENO) == 1; }
+  [[nodiscard]] Config load() const { return config.empty() ? Config{} : load_config(config); }
+  void write(const RunFiles& files, RunDirectory& directory) const {
+    stage_files(files, directory);
+    if (!no_report) stage_report(files, directory);
+    directory.commit();
+  }
+};
+
+struct ExplainFlags : RunFlags {
+  std::vector<std::string> records;
+  std::vector<std::string> validation;
+  std::string reference;
+  bool skip_bad_lines{false};
+};
+
+/// What a run directory and the terminal get.
+struct Findings {
+  std::string json;
+  std::string summary;
+  RunFiles files;
+};
+
+Findings explain_truck_record(const Config& config, const ExplainFlags& options) {
+  if (options.records.size() > 1)
+    throw UsageError{
+        fmt::format("RECORD: found {} records, expected one of a truck; others go with --validate",
+                    options.records.size())};
+  const Explained found = explain_truck(config, {{options.records.front(), options.skip_bad_lines},
+                                                 options.validation,
+                                                 options.show_progress()});
+  return {to_json(found),
+          summarize(found),
+          {found.identified, write_run_toml(config, found.inputs), found.state}};
+}
+
+Findings explain_rig_records(const Config& config, const ExplainFlags& options,
+                             const std::vector<std::string>& notes) {
+  rig::Explanation found = rig::explain(
+      config, {options.records, options.validation, options.reference, options.skip_bad_lines});
+  found.notes.insert(found.notes.begin(), notes.begin(), notes.end());
+  std::vector<InputFile> inputs;
+  for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
+  for (const std::string& path : options.validation)
+    inputs.push_back(describe_input(path, "validation"));
+  RunResult first = rig::identify(
+      rig::csv_record(options.records.front(), config.input, options.skip_bad_lines), config);
+  first.evidence = found.evidence;
+  first.notes.insert(first.notes.end(), found.notes.begin(), found.notes.end());
+  return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};
+}
+
+int explain(const ExplainFlags& options) {
+  const std::filesystem::path place = options.place(options.records.front());
+  RunDirectory directory{place, options.force};
+  const SourceOptions first{options.records.front(), options.skip_bad_lines};
+  const RecognisedColumns seen = recognise_columns(options.load(), first);
+  const SourceKind kind = detect_source(seen.config, first);
+  const Config config = with_record_rate(seen.config, first, kind);
+  Findings found = kind == SourceKind::kRigCsv ? explain_rig_records(config, options, seen.notes)
+                                               : explain_truck_record(config, options);
+  found.files.result.evidence.explanation = found.json;
+  options.write(found.files, directory);
+  if (options.json) {
+    fmt::print("{}", found.json);
+  } else if (!options.quiet) {
+    fmt::print("{}{}: {}\n", found.summary, options.no_report ? "results" : "report",
+               options.outcome(place));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_explain_verb(CLI::App& program, std::function<int()>& action) {
+  CLI::App* verb = program.add_subcommand(
+      "explain", "Find out what a model lacks: the effect, its size, the error before and after");
+  const auto options = std::make_shared<ExplainFlags>();
+  verb->add_option(
+          "RECORD", options->records,
+          "a truck's record: FILE.log (candump), FILE.csv, or a black box; or records of a "
+          "rig (FILE.csv), explained by one model")
+      ->required();
+  verb->add_option("--validate", options->validation,
+                   "records that are never fitted, only predicted; after RECORD")
+      ->expected(1, -1);
+  verb->add_option("--reference-column", options->reference,
+                   "a rig's validation: a column with another prediction of the force, in N");
+  verb->add_option("--config", options->config,
+                   "configuration (TOML): [model] base and candidates, [car], [input]");
+  verb->add_option("--out", options->out,
+                   "run directory; default: a new one named after the record");
+  verb->add_flag("--force", options->force, "replace an earlier run in --out");
+  verb->add_flag("--no-report", options->no_report, "do not draw report.html");
+  verb->add_flag("--json", options->json, "print explanation.json instead of a table");
+  verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
+  verb->add_flag("--skip-bad-lines", options->skip_bad_lines,
+                 "count malformed lines instead of stopping at the first");
+  verb->callback([options, &action] { action = [options] { return explain(*options); }; });
+}
+
+namespace {
+
+struct IdentifyFlags : RunFlags {
+  SourceOptions source;
+  std::string methods;
   LiveOptions live;
   std::string blackbox;
   bool no_blackbox{false};
   bool any_live_flag{false};
 };
 
-std::filesystem::path place_of(const IdentifyFlags& options) {
-  if (!options.out.empty()) return options.out;
-  const std::string stem = options.source.path == "-"
-                               ? "stdin"
-                               : std::filesystem::path{options.source.path}.stem().string();
-  return free_run_name(std::filesystem::current_path(), stem);
-}
-
 void print_result(const IdentifyFlags& options, const RunResult& result,
                   const std::filesystem::path& place) {
   if (options.json) fmt::print("{}", to_json(result));
   if (options.json || options.quiet) return;
   fmt::print("{}  {:<20} {}\n", summarize(result), options.no_report ? "results" : "report",
-             (options.no_report ? place : place / "report.html").string());
+             options.outcome(place));
 }
 
 void check_live_flags(const IdentifyFlags& options, SourceKind kind) {
@@ -76,7 +189,7 @@ std::filesystem::path blackbox_of(const IdentifyFlags& options,
 /// A record, or a live interface until it ends.
 Identified find(const IdentifyFlags& options, const Config& config, SourceKind kind,
                 const std::filesystem::path& place) {
-  const bool progress = !options.quiet && ::isatty(STDERR_FILENO) == 1;
+  const bool progress = options.show_progress();
   if (kind != SourceKind::kInterface)
     return identify_source(config, options.source, kind, progress);
   return identify_live(config, options.source.path, options.live,
@@ -84,7 +197,7 @@ Identified find(const IdentifyFlags& options, const Config& config, SourceKind k
 }
 
 Config config_of(const IdentifyFlags& options) {
-  Config config = options.config.empty() ? Config{} : load_config(options.config);
+  Config config = options.load();
   if (!options.methods.empty()) config.estimate.methods = options.methods;
   return config;
 }
@@ -94,16 +207,14 @@ int identify(const IdentifyFlags& options) {
   const SourceKind kind = detect_source(seen.config, options.source);
   const Config config = with_record_rate(seen.config, options.source, kind);
   check_live_flags(options, kind);
-  const std::filesystem::path place = place_of(options);
+  const std::filesystem::path place = options.place(options.source.path);
   RunDirectory directory{place,
                          options.force};  // first: a place that cannot be written costs no work
   Identified found = find(options, config, kind, place);
   found.result.notes.insert(found.result.notes.begin(), seen.notes.begin(), seen.notes.end());
   const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
                        std::move(found.state)};
-  stage_files(files, directory);
-  if (!options.no_report) stage_report(files, directory);
-  directory.commit();
+  options.write(files, directory);
   print_result(options, files.result, place);
   return 0;
 }

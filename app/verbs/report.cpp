@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/verbs/report.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,8 +9,8 @@
 
 #include "app/report/page.hpp"
 #include "app/run/directory.hpp"
-#include "app/run/files.hpp"
-#include "app/text/warn.hpp"
+#include "app/text/format.hpp"
+#include "app/verbs/verbs.hpp"
 
 namespace dampline::app {
 namespace {

@@ -3,15 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 
 #include "app/error.hpp"
-#include "app/verbs/simulate_files.hpp"
+#include "app/verbs/output.hpp"
 #include "app/verbs/simulate_send.hpp"
-#include "app/verbs/text_file.hpp"
+#include "app/verbs/verbs.hpp"
 #include "drivers/candump/line.hpp"
+#include "sim_hw/effects/registry.hpp"
+#include "sim_hw/faults.hpp"
 #include "sim_hw/writers.hpp"
 
 namespace dampline::app {
@@ -119,6 +123,107 @@ int simulate(const SimulateOptions& options) {
                csv ? "rows" : "frames", options.out == "-" ? "standard output" : options.out);
   }
   return 0;
+}
+
+namespace {
+
+std::string effect_help() {
+  std::string text =
+      "add an effect: NAME or NAME:parameter=value,... (repeatable); strength=1 "
+      "scales the defaults. Names: ";
+  for (const sim::Effect& effect : sim::effects()) {
+    text += fmt::format("{}{}", &effect == sim::effects().data() ? "" : ", ", effect.name);
+  }
+  return text + ". --list-effects tells their parameters";
+}
+
+int list_effects() {
+  const sim::SimulationConfig laden;
+  for (const sim::Effect& effect : sim::effects()) {
+    fmt::print("{}: {}\n", effect.name, effect.meaning);
+    for (const sim::EffectParameter& parameter : effect.parameters) {
+      fmt::print("    {} = {:.6g}\n", parameter.name, parameter.nominal(laden));
+    }
+  }
+  return 0;
+}
+
+void add_car_flags(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--load", options.load, "laden or empty")->capture_default_str();
+  verb.add_option("--speed-kmh", options.speed_kmh, "speed")->capture_default_str();
+  verb.add_option("--track", options.track, "ORE B176 irregularity: low or high")
+      ->capture_default_str();
+  verb.add_option("--short-wave-mps2", options.short_wave_mps2,
+                  "rms of the wheelsets' acceleration between 45 and 75 Hz")
+      ->capture_default_str();
+  verb.add_option("--friction-scale", options.friction_scale, "factor of the friction")
+      ->capture_default_str();
+  verb.add_option("--vehicle", options.vehicle,
+                  "leading or trailing: this truck of a whole car (body and two trucks, four "
+                  "degrees of freedom); without it a truck alone");
+  verb.add_option("--standstill", options.standstill_s, "START,END in seconds (repeatable)")
+      ->delimiter(',')
+      ->expected(2, 2 * static_cast<int>(sim::kMostStandstills))
+      ->take_all();
+  verb.add_option("--speed-change", options.speed_change, "TIME,KMH: change to another speed")
+      ->delimiter(',')
+      ->expected(2);
+  verb.add_option("--effect", options.effects, effect_help())->expected(1)->take_all();
+}
+
+void add_sensor_flags(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--noise-mps2", options.noise_mps2, "white noise of a sensor, rms")
+      ->capture_default_str();
+  verb.add_option("--bias-mps2", options.bias_mps2, "constant error, one standard deviation")
+      ->capture_default_str();
+  verb.add_option("--drift-mps2", options.drift_mps2, "slow change of the bias, rms")
+      ->capture_default_str();
+  verb.add_option("--fault", options.faults,
+                  fmt::format("add a fault (repeatable): {}", sim::kFaultHelp))
+      ->expected(1)
+      ->take_all();
+}
+
+void add_file_flags(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--out", options.out, "the record; - is the standard output")
+      ->capture_default_str();
+  verb.add_option("--format", options.format, "candump or csv; default by the suffix of --out");
+  verb.add_option("--interface", options.interface, "name of the CAN interface in candump lines")
+      ->capture_default_str();
+  verb.add_option("--truth", options.truth, "also write states and forces, as CSV");
+  verb.add_option("--dbc", options.dbc, "also write the DBC file of the sensors");
+  verb.add_option("--config-out", options.config, "also write a configuration for identify");
+  verb.add_flag("--quiet", options.quiet, "no summary on the standard error");
+}
+
+void add_sending_flags(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--to", options.to, "send on this CAN interface instead of writing a record");
+  verb.add_option("--speed", options.speed, "with --to: 2 is twice as fast as in reality")
+      ->capture_default_str();
+  verb.add_flag("--asap", options.asap, "with --to: as fast as possible");
+  verb.add_option("--batch", options.batch_ticks,
+                  "with --to: so many sample instants (1/300 s) together, when the last is due")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_simulate_verb(CLI::App& program, std::function<int()>& action) {
+  CLI::App* const verb = program.add_subcommand(
+      "simulate", "simulate a run of the car: three accelerometers on a CAN bus, or as CSV");
+  const auto options = std::make_shared<SimulateOptions>();
+  const auto listing = std::make_shared<bool>(false);
+  verb->add_option("--duration", options->duration_s, "seconds")->capture_default_str();
+  verb->add_option("--seed", options->seed, "the same seed gives the same bytes")
+      ->capture_default_str();
+  add_car_flags(*verb, *options);
+  add_sensor_flags(*verb, *options);
+  add_file_flags(*verb, *options);
+  add_sending_flags(*verb, *options);
+  verb->add_flag("--list-effects", *listing, "list the effects and their parameters, and end");
+  verb->callback([options, listing, &action] {
+    action = [options, listing] { return *listing ? list_effects() : simulate(*options); };
+  });
 }
 
 }  // namespace dampline::app

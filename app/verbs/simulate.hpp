@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "sim_hw/faults.hpp"
 #include "sim_hw/nodes.hpp"
 #include "sim_hw/simulation.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace dampline::app {
 
@@ -62,8 +57,5 @@ struct SimulatedRun {
 
 /// Simulates and writes the files, or sends. Returns 0; throws UsageError or RunError.
 int simulate(const SimulateOptions& options);
-
-/// Registers the subcommand; when it is chosen, `action` becomes the call of simulate().
-void add_simulate_verb(CLI::App& program, std::function<int()>& action);
 
 }  // namespace dampline::app

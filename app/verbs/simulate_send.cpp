@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/verbs/frame_schedule.hpp"
-#include "app/verbs/simulate_files.hpp"
-#include "app/verbs/stop_request.hpp"
+#include "app/verbs/output.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/sender.hpp"
 
@@ -114,6 +113,57 @@ void send_run(const SimulateOptions& options, const SimulatedRun& run) {
   progress.end();
   batches.close();
   if (!options.quiet) print_summary(options, done, sender->health());
+}
+
+namespace {
+
+volatile std::sig_atomic_t requested = 0;  // NOLINT a signal handler reaches nothing else
+
+extern "C" void request_stop(int /*signal*/) { requested = 1; }
+
+}  // namespace
+
+StopRequest::StopRequest() noexcept {
+  requested = 0;
+  struct sigaction action {};
+  action.sa_handler = request_stop;  // NOLINT a union of the system's
+  ::sigemptyset(&action.sa_mask);
+  ::sigaction(SIGINT, &action, &before_interrupt_);
+  ::sigaction(SIGTERM, &action, &before_terminate_);
+}
+
+StopRequest::~StopRequest() {
+  ::sigaction(SIGINT, &before_interrupt_, nullptr);
+  ::sigaction(SIGTERM, &before_terminate_, nullptr);
+}
+
+bool StopRequest::made() const noexcept { return requested != 0; }
+
+void FrameSchedule::start(std::int64_t first_ns) noexcept {
+  if (started_) return;
+  started_ = true;
+  first_ns_ = first_ns;
+  start_ns_ = clock_.monotonic_ns();
+}
+
+std::int64_t FrameSchedule::due_ns(std::int64_t time_ns) const noexcept {
+  const std::int64_t since_ns = time_ns - first_ns_;
+  if (speed_ == 0.0) return start_ns_;
+  if (speed_ == 1.0) return start_ns_ + since_ns;
+  return start_ns_ + std::llround(static_cast<double>(since_ns) / speed_);
+}
+
+// In slices: a signal that comes just before a sleep does not cut it short.
+bool FrameSchedule::wait_for(std::int64_t time_ns, const StopRequest& stop) const noexcept {
+  constexpr std::int64_t kSliceNs = 100'000'000;
+  if (speed_ == 0.0) return !stop.made();
+  const std::int64_t due = due_ns(time_ns);
+  while (!stop.made()) {
+    const std::int64_t now_ns = clock_.monotonic_ns();
+    if (now_ns >= due) return true;
+    clock_.sleep_until(std::min(due, now_ns + kSliceNs));
+  }
+  return false;
 }
 
 }  // namespace dampline::app

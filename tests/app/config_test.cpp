@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "app/error.hpp"
-#include "app/text/nearest.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // What a run directory keeps of an explanation, and what the page shows of it.
-#include "app/report/evidence.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,10 +7,12 @@
 #include <filesystem>
 
 #include "app/error.hpp"
-#include "app/report/child.hpp"
+#include "app/report/gnuplot.hpp"
 #include "app/report/page.hpp"
-#include "app/run/evidence_tables.hpp"
-#include "app/run/files.hpp"
+#include "app/report/plots.hpp"
+#include "app/report/sections.hpp"
+#include "app/run/directory.hpp"
+#include "app/run/tables.hpp"
 #include "tests/app/fake_result.hpp"
 
 namespace dampline::app {
@@ -54,18 +54,18 @@ Evidence some_evidence() {
 
 TEST(EvidenceTables, ComeBackAsTheyWere) {
   const Evidence e = some_evidence();
-  const auto residual = read_residual(to_csv(e.residual), "residual.csv");
+  const auto residual = read_table<ResidualRow>(to_csv(e.residual), "residual.csv");
   ASSERT_EQ(residual.size(), e.residual.size());
   EXPECT_EQ(residual[9].over, "velocity_mps");
   EXPECT_DOUBLE_EQ(residual[9].place, 0.002);
   EXPECT_EQ(residual[9].samples, 500U);
   EXPECT_DOUBLE_EQ(residual[9].before_mean_n, 12.5);
   EXPECT_DOUBLE_EQ(residual[9].after_rms_n, 90.0);
-  const auto loops = read_loops(to_csv(e.loops), "loops.csv");
+  const auto loops = read_table<LoopRow>(to_csv(e.loops), "loops.csv");
   ASSERT_EQ(loops.size(), e.loops.size());
   EXPECT_NEAR(loops[7].measured_n, e.loops[7].measured_n, 0.01);
   EXPECT_DOUBLE_EQ(loops[7].final_n, 7900.0);
-  const auto law = read_law(to_csv(e.law), "law.csv");
+  const auto law = read_table<LawRow>(to_csv(e.law), "law.csv");
   ASSERT_EQ(law.size(), 2U);
   EXPECT_DOUBLE_EQ(law[1].final_n, 8500.0);
   const auto prediction = read_prediction(to_csv(e.prediction), "prediction.csv");
@@ -78,7 +78,7 @@ TEST(EvidenceTables, ComeBackAsTheyWere) {
 
 TEST(EvidenceTables, NameTheLineThatIsDamaged) {
   try {
-    static_cast<void>(read_law("velocity_mps,base_n,final_n\n1,2,3\n1,x,3\n", "law.csv"));
+    static_cast<void>(read_table<LawRow>("velocity_mps,base_n,final_n\n1,2,3\n1,x,3\n", "law.csv"));
     FAIL();
   } catch (const RunError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("law.csv:3"), HasSubstr("\"x\"")));

@@ -6,8 +6,10 @@
 
 #include "app/config/config.hpp"
 #include "app/identify/truck_run.hpp"
-#include "app/report/faults.hpp"
-#include "app/run/parameters_json.hpp"
+#include "app/report/plots.hpp"
+#include "app/report/sections.hpp"
+#include "app/run/json.hpp"
+#include "app/text/summary.hpp"
 #include "sim_hw/faults.hpp"
 #include "sim_hw/simulation.hpp"
 

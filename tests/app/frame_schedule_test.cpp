@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "app/verbs/frame_schedule.hpp"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 
+#include "app/verbs/simulate_send.hpp"
 #include "tests/drivers/manual_clock.hpp"
 
 namespace dampline::app {

@@ -6,9 +6,9 @@
 
 #include <cstdlib>
 
-#include "app/report/child.hpp"
+#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
-#include "app/text/quantity.hpp"
+#include "app/text/format.hpp"
 #include "app/text/summary.hpp"
 #include "tests/app/fake_result.hpp"
 

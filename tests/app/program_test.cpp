@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/config/config.hpp"
-#include "app/run/state_file.hpp"
+#include "app/run/state.hpp"
 
 namespace dampline::app {
 namespace {

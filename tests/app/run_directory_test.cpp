@@ -10,10 +10,8 @@
 
 #include "app/error.hpp"
 #include "app/run/directory.hpp"
-#include "app/run/files.hpp"
-#include "app/run/parameters_json.hpp"
-#include "app/run/phase_json.hpp"
-#include "app/run/run_toml.hpp"
+#include "app/run/json.hpp"
+#include "app/run/provenance.hpp"
 #include "app/run/tables.hpp"
 #include "tests/app/fake_result.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/run/state_file.hpp"
+#include "app/run/state.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include <system_error>
 #include <thread>
 
-#include "app/report/child.hpp"
+#include "app/report/gnuplot.hpp"
 
 namespace dampline::bus {
 namespace {

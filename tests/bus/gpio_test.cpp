@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/lamp.hpp"
+#include "app/live/digital_lines.hpp"
 #include "drivers/gpiod/lines.hpp"
 #include "tests/bus/gpio_sim.hpp"
 #include "tests/contract/edge_source_contract.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/run/evidence_tables.hpp"
+#include "app/run/tables.hpp"
 #include "tests/explain/explained_rig.hpp"
 
 namespace dampline::app {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Without the privilege for it a live run goes on, and says what it lacks.
-#include "app/live/realtime.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/live/process.hpp"
 #include "tests/fault/fault_plan.hpp"
 
 namespace dampline::fault {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/edge_events.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "app/live/digital_lines.hpp"
 
 namespace dampline::app {
 namespace {

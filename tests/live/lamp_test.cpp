@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/lamp.hpp"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <vector>
+
+#include "app/live/digital_lines.hpp"
 
 namespace dampline::app {
 namespace {

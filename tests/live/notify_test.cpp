@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/notify.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -12,6 +10,8 @@
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "app/live/process.hpp"
 
 namespace dampline::app {
 namespace {

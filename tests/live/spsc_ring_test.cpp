@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/spsc_ring.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <thread>
 
-#include "app/live/latest.hpp"
+#include "app/live/handover.hpp"
 
 namespace dampline::app {
 namespace {

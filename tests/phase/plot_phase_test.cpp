@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/report/plot_phase.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +7,8 @@
 #include <memory>
 #include <numbers>
 #include <string>
+
+#include "app/report/phase_plot.hpp"
 
 namespace dampline::app {
 namespace {

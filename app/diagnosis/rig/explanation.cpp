@@ -10,7 +10,7 @@
 #include "app/diagnosis/rig/trials.hpp"
 #include "app/explain/evidence_meter.hpp"
 #include "app/explain/signature_json.hpp"
-#include "app/text/quantity.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app::rig {
 namespace {

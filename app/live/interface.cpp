@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "app/live/interface.hpp"
+
+#include <cmath>
+
+#include "app/error.hpp"
+#include "app/identify/can_channels.hpp"
+#include "app/identify/progress.hpp"
+#include "app/live/digital_lines.hpp"
+#include "app/live/process.hpp"
+#include "app/live/recorder.hpp"
+#include "app/run/directory.hpp"
+#include "app/run/json.hpp"
+#include "app/text/format.hpp"
+#include "drivers/blackbox/writer.hpp"
+#include "drivers/os/system_clock.hpp"
+#include "drivers/socketcan/link.hpp"
+#include "drivers/socketcan/source.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::int64_t kKib = 1024;
+
+std::unique_ptr<drivers::SocketCanSource> open_bus(const Config& config,
+                                                   const std::string& interface,
+                                                   const AssemblerConfig& assembler,
+                                                   const hal::Clock& clock,
+                                                   const hal::RunTime& run_time) {
+  drivers::SocketCanConfig bus;
+  bus.interface = interface;
+  for (const ChannelConfig& channel : assembler.channels)
+    bus.identifiers.push_back({channel.id, channel.extended});
+  bus.receive_buffer_bytes = static_cast<int>(config.input.can.receive_buffer_kib * kKib);
+  bus.run_time = run_time;
+  const auto link = drivers::read_link(interface);
+  if (!link.ok()) throw RunError{link.error_text()};
+  for (const std::string& text : drivers::link_warnings(link.value())) warn(text);
+  auto source = drivers::SocketCanSource::open(bus, clock);
+  if (!source.ok()) throw RunError{source.error_text()};
+  return std::move(source.value());
+}
+
+std::unique_ptr<hal::RecordSink> open_sink(const BlackboxSettings& settings,
+                                           const std::string& interface,
+                                           const std::filesystem::path& folder) {
+  if (folder.empty()) return std::make_unique<VoidSink>();
+  drivers::BlackboxConfig blackbox;
+  blackbox.directory = folder;
+  blackbox.rotate_bytes = static_cast<std::uint64_t>(settings.rotate_mib * kKib * kKib);
+  blackbox.rotate_ns = std::llround(1e9 * settings.rotate_s);
+  blackbox.keep_bytes = static_cast<std::uint64_t>(settings.keep_mib * kKib * kKib);
+  blackbox.sync_interval_ns = std::llround(1e9 * settings.sync_s);
+  blackbox.interfaces = {interface};
+  auto sink = drivers::BlackboxWriter::open(blackbox);
+  if (!sink.ok()) throw RunError{sink.error_text()};
+  return std::move(sink.value());
+}
+
+}  // namespace
+
+Identified identify_live(const Config& config, const std::string& interface,
+                         const LiveOptions& options, const LivePlace& place) {
+  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
+  const drivers::SystemClock clock;
+  const hal::RunTime run_time = hal::RunTime::start(clock);
+  const AssemblerConfig assembler = can_channels(config);
+  const auto source = open_bus(config, interface, assembler, clock, run_time);
+  const auto sink = open_sink(config.blackbox, interface, place.blackbox);
+  DigitalLines lines{config.gpio, run_time};
+  const NotifyEnvironment environment = NotifyEnvironment::take();
+  Notifier notifier{environment.socket};
+  Watchdog watchdog{notifier, environment.watchdog_ns};
+  Progress progress{place.show_progress};
+  LiveOptions live = options;
+  live.record = !place.blackbox.empty();
+  LiveOutlets outlets;
+  outlets.begin = [&](Recorder& recorder) {
+    lines.start(recorder);
+    notifier.ready("waiting for samples");
+  };
+  outlets.turn = [&](LiveState state, std::uint64_t turns, std::int64_t now_ns) {
+    lines.show(state, now_ns);
+    watchdog.look(turns, now_ns);
+  };
+  outlets.rotated = [&] {
+    notifier.reloading();
+    notifier.ready("a new black box file was begun");
+  };
+  outlets.end = [&] {
+    lines.stop();
+    notifier.stopping();
+  };
+  outlets.publish = [&](const RunResult& result) {
+    write_file(place.run / "live.json", to_json(result));
+    const std::string line = status_line(result);
+    notifier.status(line);
+    progress.show({}, 0.0, line);
+  };
+  LiveRun run{config,
+              assembler,
+              {interface, source.get(), sink.get(), &clock, run_time},
+              live,
+              std::move(outlets)};
+  Identified found = run.run();
+  lines.describe(found.result);
+  found.inputs.push_back({interface, "interface", 0, ""});
+  if (!config.input.can.dbc.empty())
+    found.inputs.push_back(describe_input(config.input.can.dbc, "dbc"));
+  return found;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "app/live/process.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+
+namespace dampline::app {
+
+void lock_memory(Realtime& realtime) {
+  realtime.memory_locked = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  if (!realtime.memory_locked)
+    realtime.problems.push_back(
+        fmt::format("Memory could not be locked ({}): the acquisition may wait for a page. Allow "
+                    "it with LimitMEMLOCK=infinity or `ulimit -l unlimited`.",
+                    std::strerror(errno)));
+}
+
+void schedule_fifo(int priority, Realtime& realtime) {
+  if (priority == 0) return;
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter);
+  realtime.scheduled = error == 0;
+  if (error != 0)
+    realtime.problems.push_back(fmt::format(
+        "Real-time scheduling (SCHED_FIFO {}) was refused ({}): samples may be handled late, which "
+        "changes no result. Allow it with LimitRTPRIO={} or `ulimit -r {}`.",
+        priority, std::strerror(error), priority, priority));
+}
+
+void prefault_stack() noexcept {
+  constexpr std::size_t kBytes = std::size_t{128} * 1024;
+  constexpr std::size_t kPage = 4096;
+  std::array<unsigned char, kBytes> stack;  // NOLINT(*-member-init): only its pages matter
+  volatile unsigned char* bytes = stack.data();
+  for (std::size_t i = 0; i < kBytes; i += kPage) bytes[i] = 0;
+}
+
+PageFaults page_faults_of_thread() noexcept {
+  rusage usage{};
+  if (::getrusage(RUSAGE_THREAD, &usage) != 0) return {};
+  return {static_cast<std::uint64_t>(usage.ru_minflt), static_cast<std::uint64_t>(usage.ru_majflt)};
+}
+
+Signals::Signals() noexcept {
+  ::sigemptyset(&wanted_);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&wanted_, number);
+  ::pthread_sigmask(SIG_BLOCK, &wanted_, &before_);
+}
+
+Signals::~Signals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+SignalSeen Signals::wait(std::chrono::nanoseconds timeout) const noexcept {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const timespec limit{timeout.count() / kSecond, timeout.count() % kSecond};
+  switch (::sigtimedwait(&wanted_, nullptr, &limit)) {
+    case SIGINT:
+    case SIGTERM:
+      return SignalSeen::kStop;
+    case SIGHUP:
+      return SignalSeen::kRotate;
+    default:
+      return SignalSeen::kNone;
+  }
+}
+
+namespace {
+
+std::string take_variable(const char* name) {
+  const char* const value = std::getenv(name);
+  std::string text = value == nullptr ? "" : value;
+  ::unsetenv(name);
+  return text;
+}
+
+std::optional<std::int64_t> number(const std::string& text) {
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stop != end || value <= 0) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+NotifyEnvironment NotifyEnvironment::take() {
+  NotifyEnvironment environment{.socket = take_variable("NOTIFY_SOCKET"), .watchdog_ns = {}};
+  const std::optional<std::int64_t> interval_us = number(take_variable("WATCHDOG_USEC"));
+  const std::string process = take_variable("WATCHDOG_PID");
+  const bool ours = process.empty() || number(process) == ::getpid();
+  constexpr std::int64_t kMostUs = 1'000'000'000'000;  // beyond that nobody watches
+  if (interval_us && ours && *interval_us <= kMostUs) environment.watchdog_ns = *interval_us * 1000;
+  return environment;
+}
+
+Notifier::Notifier(const std::string& socket) {
+  // A path, or with @ a name without a file.
+  if (socket.size() < 2 || (socket[0] != '/' && socket[0] != '@')) return;
+  if (socket.size() >= sizeof address_.sun_path) return;
+  address_.sun_family = AF_UNIX;
+  std::copy(socket.begin(), socket.end(), std::begin(address_.sun_path));
+  if (socket[0] == '@') address_.sun_path[0] = '\0';
+  address_bytes_ = static_cast<unsigned>(offsetof(sockaddr_un, sun_path) + socket.size());
+  file_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  // A manager whose queue is full is waited for, but not for long.
+  const timeval patience{.tv_sec = 0, .tv_usec = 500'000};
+  static_cast<void>(::setsockopt(file_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience));
+}
+
+Notifier::~Notifier() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void Notifier::send(std::string_view message) noexcept {
+  if (file_ < 0) return;
+  const auto* const to = reinterpret_cast<const sockaddr*>(&address_);
+  const ssize_t sent =
+      ::sendto(file_, message.data(), message.size(), MSG_NOSIGNAL, to, address_bytes_);
+  if (sent != static_cast<ssize_t>(message.size())) ++failures_;
+}
+
+void Notifier::ready(std::string_view status_text) noexcept {
+  send("READY=1");
+  status(status_text);
+}
+
+void Notifier::status(std::string_view text) noexcept {
+  constexpr std::string_view kKey = "STATUS=";
+  std::array<char, 512> message{};
+  std::copy(kKey.begin(), kKey.end(), message.begin());
+  const std::size_t room = message.size() - kKey.size();
+  const std::string_view line = text.substr(0, std::min(text.find('\n'), room));
+  std::copy(line.begin(), line.end(), message.begin() + kKey.size());
+  send({message.data(), kKey.size() + line.size()});
+}
+
+void Notifier::reloading() noexcept { send("RELOADING=1"); }
+void Notifier::stopping() noexcept { send("STOPPING=1"); }
+void Notifier::watchdog() noexcept { send("WATCHDOG=1"); }
+
+Watchdog::Watchdog(Notifier& notifier, std::optional<std::int64_t> timeout_ns) noexcept
+    : notifier_{notifier} {
+  if (timeout_ns) interval_ns_ = *timeout_ns / 4;
+}
+
+void Watchdog::look(std::uint64_t turns, std::int64_t monotonic_ns) noexcept {
+  if (!interval_ns_ || turns == turns_ || monotonic_ns < next_ns_) return;
+  turns_ = turns;
+  next_ns_ = monotonic_ns + *interval_ns_;
+  notifier_.watchdog();
+  ++feeds_;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "app/text/format.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace dampline::app {
+namespace {
+
+constexpr int kMaxDecimals = 9;
+constexpr double kSmallestGroup = 1e5;  // shorter numbers are read without grouping
+
+/// Groups of three before the decimal point, for numbers of six digits and more.
+std::string group(std::string text, const std::string& separator) {
+  const std::size_t first = text.front() == '-' ? 1 : 0;
+  std::size_t end = std::min(text.find('.'), text.size());
+  while (end > first + 3) {
+    end -= 3;
+    text.insert(end, separator);
+  }
+  return text;
+}
+
+std::string fixed(double value, int decimals) {
+  // Digits that the deviation does not support are rounded away before the point, too.
+  const double unit = std::pow(10.0, -decimals);
+  const double rounded = decimals < 0 ? std::round(value / unit) * unit : value;
+  const std::string text = fmt::format("{:.{}f}", rounded, std::max(decimals, 0));
+  return std::fabs(value) >= kSmallestGroup ? group(text, " ") : text;
+}
+
+}  // namespace
+
+QuantityText format_quantity(double value, double std) {
+  if (!std::isfinite(value)) return {"unknown", ""};
+  if (!(std > 0.0) || !std::isfinite(std)) return {fmt::format("{:.6g}", value), ""};
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(std)));
+  if (decimals > kMaxDecimals) return {fmt::format("{:.9g}", value), fmt::format("{:.2g}", std)};
+  return {fixed(value, decimals), fixed(std, decimals)};
+}
+
+std::string format_count(std::uint64_t count, const std::string& separator) {
+  return group(fmt::format("{}", count), separator);
+}
+
+std::string format_microseconds(double us) {
+  return us < 1e4 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.0f} ms", 1e-3 * us);
+}
+
+std::string format_duration(double seconds) {
+  if (seconds < 60.0) return fmt::format("{:.3g} s", seconds);
+  const auto whole = static_cast<std::int64_t>(std::llround(seconds));
+  const std::int64_t unit = whole < 3600 ? 60 : 3600;
+  const std::string large = fmt::format("{} {}", whole / unit, unit == 60 ? "min" : "h");
+  const std::int64_t rest = whole % unit / (unit / 60);
+  return rest == 0 ? large : fmt::format("{} {} {}", large, rest, unit == 60 ? "s" : "min");
+}
+
+std::string toml_string(std::string_view text) {
+  constexpr unsigned char kDelete = 0x7f;
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (code < 0x20 || code == kDelete) {
+      out += fmt::format("\\u{:04X}", code);
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+void warn(std::string_view text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
+
+std::size_t edit_distance(std::string_view left, std::string_view right) {
+  std::vector<std::size_t> row(right.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < right.size(); ++j) {
+      const std::size_t replaced = diagonal + (left[i] == right[j] ? 0U : 1U);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
+  std::string_view best;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string list_words(std::span<const std::string_view> words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
+    text += '"';
+    text += words[i];
+    text += '"';
+  }
+  return text;
+}
+
+}  // namespace dampline::app

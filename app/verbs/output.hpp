@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim_hw/simulation.hpp"
+
+namespace dampline::app {
+
+/// A text file that is written front to back through a large buffer; "-" is the standard output.
+/// A file that was not closed is removed again.
+class TextFile {
+ public:
+  /// Throws RunError naming the file and the reason.
+  explicit TextFile(std::string path);
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+  ~TextFile();
+  /// Append here, then call tick() now and then.
+  [[nodiscard]] fmt::memory_buffer& buffer() noexcept { return buffer_; }
+  /// Writes the buffer out when it has grown. Throws RunError when the disk is full.
+  void tick() {
+    if (buffer_.size() >= kFlushBytes) flush();
+  }
+  /// Writes the rest. Throws RunError.
+  void close();
+
+ private:
+  static constexpr std::size_t kFlushBytes = std::size_t{1} << 20U;
+  void flush();
+  [[noreturn]] void fail(const char* action) const;
+  [[nodiscard]] bool is_stdout() const noexcept { return path_ == "-"; }
+  std::string path_;
+  int file_{-1};
+  fmt::memory_buffer buffer_;
+};
+
+/// The truth of a run as CSV, where it was asked for.
+class TruthFile {
+ public:
+  /// An empty path: none. Throws RunError.
+  TruthFile(const std::string& path, const sim::SimulationConfig& config);
+  void append(const sim::SimulatedSample& sample);
+  void close();
+
+ private:
+  std::optional<TextFile> file_;
+};
+
+/// A line on a terminal that shows how far the run is, at most once per percent.
+class SimulateProgress {
+ public:
+  SimulateProgress(std::int64_t samples, bool quiet);
+  void at(std::int64_t sample) const;
+  void end() const;
+
+ private:
+  std::int64_t step_;
+  bool shown_;
+};
+
+}  // namespace dampline::app
