@@ -9,6 +9,22 @@
 #include "dampline/numeric/wide.hpp"
 
 namespace dampline {
+namespace detail {
+
+/// Two rows by an angle: plain loops over memory that does not overlap, so that compilers vectorise
+/// them.
+template <class Scalar>
+inline void rotate(Scalar* __restrict upper, Scalar* __restrict lower, int count, Scalar c,
+                   Scalar s) noexcept {
+  for (int j = 0; j < count; ++j) {
+    const Scalar above = upper[j];
+    const Scalar below = lower[j];
+    upper[j] = c * above + s * below;
+    lower[j] = c * below - s * above;
+  }
+}
+
+}  // namespace detail
 
 /// Square-root information of a least-squares problem: the upper-triangular factor R of [A | b],
 /// R'R = [A b]'[A b], built row by row with Givens rotations (Golub and Van Loan, Matrix
@@ -43,7 +59,7 @@ class Information {
       const Scalar c = r[0] / norm;
       const Scalar s = x / norm;
       r[0] = norm;
-      rotate(r + 1, row.data() + i + 1, Columns - i - 1, c, s);
+      detail::rotate(r + 1, row.data() + i + 1, Columns - i - 1, c, s);
     }
   }
 
@@ -175,17 +191,6 @@ class Information {
  private:
   static constexpr Scalar kLeastSquare = Scalar(1e4) * std::numeric_limits<Scalar>::min();
 
-  // Plain loops over memory that does not overlap, so that compilers vectorise them.
-  static void rotate(Scalar* __restrict upper, Scalar* __restrict lower, int count, Scalar c,
-                     Scalar s) noexcept {
-    for (int j = 0; j < count; ++j) {
-      const Scalar above = upper[j];
-      const Scalar below = lower[j];
-      upper[j] = c * above + s * below;
-      lower[j] = c * below - s * above;
-    }
-  }
-
   // The columns after i of the factor's row `r` and of the panel, reflected at v = (first,
   // panel[.][i]), where first = r - |r|, formed without cancellation: x + v (v'x) / (|r| first). By
   // whole vectors: of the last one, what lies beyond the row is put back, or in the margin.
@@ -232,6 +237,83 @@ class Information {
     return static_cast<std::size_t>(i * Columns - i * (i - 1) / 2);
   }
   std::array<Scalar, kSize> factor_{};
+};
+
+/// The same of a problem whose number of unknowns is known at run time only, at most `Most`. The
+/// equation's right-hand side is column size().
+template <int Most>
+class RunTimeInformation {
+ public:
+  using Row = std::array<double, static_cast<std::size_t>(Most) + 1>;
+  using Vector = std::array<double, static_cast<std::size_t>(Most)>;
+
+  explicit RunTimeInformation(int unknowns) noexcept : unknowns_{unknowns} {}
+
+  [[nodiscard]] int size() const noexcept { return unknowns_; }
+  [[nodiscard]] double at(int i, int j) const noexcept { return rows_[index(i)][index(j)]; }
+  [[nodiscard]] const Row& row(int i) const noexcept { return rows_[index(i)]; }
+
+  void absorb(Row row) noexcept {
+    for (int i = 0; i <= unknowns_; ++i) {
+      const double x = row[index(i)];
+      if (x == 0.0) continue;
+      Row& r = rows_[index(i)];
+      const double norm = std::sqrt(r[index(i)] * r[index(i)] + x * x);
+      const double c = r[index(i)] / norm;
+      const double s = x / norm;
+      detail::rotate(&r[index(i)], &row[index(i)], unknowns_ - i + 1, c, s);
+    }
+  }
+
+  void merge(const RunTimeInformation& other) noexcept {
+    for (int i = 0; i <= unknowns_; ++i) absorb(other.row(i));
+  }
+
+  /// The first unknown that the data do not determine, or -1.
+  [[nodiscard]] int undetermined(double tolerance = 1e-7) const noexcept {
+    for (int j = 0; j < unknowns_; ++j)
+      if (!(std::abs(at(j, j)) > tolerance * column_norm(j))) return j;
+    return -1;
+  }
+
+  /// Precondition: every unknown is determined.
+  [[nodiscard]] Vector solve() const noexcept {
+    Vector theta{};
+    for (int i = unknowns_ - 1; i >= 0; --i) {
+      double sum = at(i, unknowns_);
+      for (int j = i + 1; j < unknowns_; ++j) sum -= at(i, j) * theta[index(j)];
+      theta[index(i)] = sum / at(i, i);
+    }
+    return theta;
+  }
+
+  /// Solves R' x = y, then R z = x: z = (R'R)^-1 y.
+  [[nodiscard]] Vector solve_normal(const Vector& y) const noexcept {
+    Vector x{};
+    for (int i = 0; i < unknowns_; ++i) {
+      double sum = y[index(i)];
+      for (int j = 0; j < i; ++j) sum -= at(j, i) * x[index(j)];
+      x[index(i)] = sum / at(i, i);
+    }
+    for (int i = unknowns_ - 1; i >= 0; --i) {
+      double sum = x[index(i)];
+      for (int j = i + 1; j < unknowns_; ++j) sum -= at(i, j) * x[index(j)];
+      x[index(i)] = sum / at(i, i);
+    }
+    return x;
+  }
+
+  [[nodiscard]] double column_norm(int j) const noexcept {
+    double sum = 0.0;
+    for (int i = 0; i <= j; ++i) sum += at(i, j) * at(i, j);
+    return std::sqrt(sum);
+  }
+
+ private:
+  static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  int unknowns_;
+  std::array<Row, static_cast<std::size_t>(Most) + 1> rows_{};
 };
 
 }  // namespace dampline

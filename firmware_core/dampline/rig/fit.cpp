@@ -9,19 +9,19 @@ namespace {
 
 constexpr int kSegments = static_cast<int>(kCurveSegments);
 
-using Vector = SmallFactor::Vector;
+using Vector = ModelInformation::Vector;
 using Scores = std::array<Vector, BlockStore::kMaxBlocks>;
 
 std::size_t as_size(int i) noexcept { return static_cast<std::size_t>(i); }
 
-SmallFactor::Row mapped(const Model& model, const Block::Row& row) noexcept {
-  SmallFactor::Row out{};
+ModelInformation::Row mapped(const Model& model, const Block::Row& row) noexcept {
+  ModelInformation::Row out{};
   for (int j = 0; j < model.size(); ++j) out[as_size(j)] = model.value(j, row);
   out[as_size(model.size())] = row[column::kForce];
   return out;
 }
 
-double residual(const SmallFactor::Row& row, const Vector& theta, int size) noexcept {
+double residual(const ModelInformation::Row& row, const Vector& theta, int size) noexcept {
   double out = row[as_size(size)];
   for (int j = 0; j < size; ++j) out -= row[as_size(j)] * theta[as_size(j)];
   return out;
@@ -33,10 +33,10 @@ bool empty(const Block& block) noexcept { return !(block.column_norm(column::kOn
 struct Factors {
   explicit Factors(int size) noexcept
       : all{size},
-        folds{SmallFactor{size}, SmallFactor{size}, SmallFactor{size}, SmallFactor{size},
-              SmallFactor{size}} {}
-  SmallFactor all;
-  std::array<SmallFactor, kFolds> folds;
+        folds{ModelInformation{size}, ModelInformation{size}, ModelInformation{size},
+              ModelInformation{size}, ModelInformation{size}} {}
+  ModelInformation all;
+  std::array<ModelInformation, kFolds> folds;
 };
 
 Factors gather(const BlockStore& store, const Model& model) noexcept {
@@ -46,14 +46,14 @@ Factors gather(const BlockStore& store, const Model& model) noexcept {
     for (int i = 0; i < column::kCount; ++i)
       out.folds[fold_of(b)].absorb(mapped(model, store.block(b).row(i)));
   }
-  for (const SmallFactor& fold : out.folds) out.all.merge(fold);
+  for (const ModelInformation& fold : out.folds) out.all.merge(fold);
   return out;
 }
 
 /// Solves without each fold. False when a fold is needed to determine an unknown.
 bool solve_folds(const Factors& factors, Solution& out) noexcept {
   for (std::size_t f = 0; f < kFolds; ++f) {
-    SmallFactor rest{factors.all.size()};
+    ModelInformation rest{factors.all.size()};
     for (std::size_t g = 0; g < kFolds; ++g)
       if (g != f) rest.merge(factors.folds[g]);
     if (rest.undetermined() >= 0) return false;
@@ -77,7 +77,7 @@ Sums sums_of(const BlockStore& store, const Solution& solution) noexcept {
   for (std::size_t b = 0; b < store.size(); ++b) {
     for (int i = 0; i < column::kCount; ++i) {
       const Block::Row row = store.block(b).row(i);
-      const SmallFactor::Row small = mapped(solution.model, row);
+      const ModelInformation::Row small = mapped(solution.model, row);
       const int size = solution.model.size();
       const double fitted = residual(small, solution.theta, size);
       const double held_out = residual(small, solution.theta_without[fold_of(b)], size);
@@ -101,7 +101,7 @@ std::size_t scores(const BlockStore& store, const Solution& solution, Scores& ou
     Vector& score = out[count++];
     score.fill(0.0);
     for (int i = 0; i < column::kCount; ++i) {
-      const SmallFactor::Row row = mapped(solution.model, store.block(b).row(i));
+      const ModelInformation::Row row = mapped(solution.model, store.block(b).row(i));
       const double left = residual(row, solution.theta, size);
       for (int j = 0; j < size; ++j) score[as_size(j)] += row[as_size(j)] * left;
     }
@@ -121,7 +121,7 @@ void add_lag(const Scores& influence, std::size_t count, std::size_t lag, double
       }
 }
 
-void set_covariance(const BlockStore& store, const SmallFactor& all, Solution& out) noexcept {
+void set_covariance(const BlockStore& store, const ModelInformation& all, Solution& out) noexcept {
   Scores influence;  // of each block on theta: (X'X)^-1 score
   const std::size_t count = scores(store, out, influence);
   for (std::size_t b = 0; b < count; ++b) influence[b] = all.solve_normal(influence[b]);
@@ -197,7 +197,7 @@ void Model::remove(int j) noexcept {
   }
 }
 
-double Solution::std_of(const SmallFactor::Vector& weights) const noexcept {
+double Solution::std_of(const ModelInformation::Vector& weights) const noexcept {
   double variance = 0.0;
   for (int i = 0; i < model.size(); ++i)
     for (int j = 0; j < model.size(); ++j)

@@ -4,10 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dampline/numeric/blocks.hpp"
+#include "dampline/numeric/information.hpp"
 #include "dampline/rig/columns.hpp"
-#include "dampline/rig/small_factor.hpp"
 
 namespace dampline::rig {
+
+/// The square-root information of one model.
+using ModelInformation = RunTimeInformation<kMaxUnknowns>;
 
 enum class Parameter : std::uint8_t {
   kMovingMass,
@@ -81,10 +85,8 @@ class BlockStore {
 
  private:
   void halve() noexcept {
-    for (std::size_t i = 0; i < kMaxBlocks / 2; ++i) {
-      if (i > 0) blocks_[i] = blocks_[2 * i];
-      blocks_[i].merge(blocks_[2 * i + 1]);
-    }
+    join_neighbours(blocks_, kMaxBlocks,
+                    [](Block& block, const Block& next) { block.merge(next); });
     for (std::size_t i = kMaxBlocks / 2; i < kMaxBlocks; ++i) blocks_[i].clear();
     size_ = (size_ + 1) / 2;
     block_samples_ *= 2;
@@ -103,16 +105,16 @@ struct Solution {
 
   bool valid{false};  ///< false: too little data, nothing below holds
   Model model;        ///< without the unknowns that the data do not determine
-  SmallFactor::Vector theta{};
-  std::array<SmallFactor::Vector, kFolds> theta_without{};  ///< fitted without fold i
-  Matrix covariance{Matrix::Zero()};                        ///< of theta
-  double nmse{0.0};                                         ///< of the rows
+  ModelInformation::Vector theta{};
+  std::array<ModelInformation::Vector, kFolds> theta_without{};  ///< fitted without fold i
+  Matrix covariance{Matrix::Zero()};                             ///< of theta
+  double nmse{0.0};                                              ///< of the rows
   double held_out_nmse{0.0};  ///< of the rows, each by the fit without its fold
   double residual_n{0.0};     ///< rms over rows
   std::uint32_t blocks{0};    ///< that hold rows
 
   /// Standard deviation of weights' theta, for derived values.
-  [[nodiscard]] double std_of(const SmallFactor::Vector& weights) const noexcept;
+  [[nodiscard]] double std_of(const ModelInformation::Vector& weights) const noexcept;
 };
 
 /// Fold of a block. Each five neighbours go to the five folds, in an order that changes from five

@@ -17,11 +17,11 @@ double velocity_of(std::size_t i, const Config& config) noexcept {
 }
 
 /// What unknown j adds to the force at a point, per unit: the regressors of one velocity.
-SmallFactor::Vector weights_at(const Model& model, double velocity_mps, bool positive,
-                               const Config& config) noexcept {
+ModelInformation::Vector weights_at(const Model& model, double velocity_mps, bool positive,
+                                    const Config& config) noexcept {
   Block::Row row = Block::Row::Zero();
   Regressors{config}.fill_branch(positive, std::abs(velocity_mps), row);
-  SmallFactor::Vector out{};
+  ModelInformation::Vector out{};
   for (int j = 0; j < model.size(); ++j) out[static_cast<std::size_t>(j)] = model.value(j, row);
   return out;
 }
