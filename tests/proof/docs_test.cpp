@@ -44,10 +44,11 @@ std::vector<std::string> paths_in(std::string_view text) {
   return out;
 }
 
-/// What documents leave out: the core's folder, the ending of a source.
+/// What documents leave out: the core's folders, the ending of a source.
 bool exists(const std::string& path) {
-  const std::array<fs::path, 4> places{kTop / path, kTop / (path + ".cpp"), kTop / (path + ".hpp"),
-                                       kTop / "firmware_core/dampline" / path};
+  const fs::path core = kTop / "firmware_core";
+  const std::array<fs::path, 5> places{kTop / path, kTop / (path + ".cpp"), kTop / (path + ".hpp"),
+                                       core / path, core / "dampline" / path};
   return std::any_of(places.begin(), places.end(), [](const fs::path& p) { return fs::exists(p); });
 }
 
