@@ -110,18 +110,18 @@ class JointHistogram {
     }
   }
   void fold_x() noexcept {
-    Masses wide{};
-    for (std::size_t i = 0; i < XBins; ++i) {
-      for (std::size_t j = 0; j < YBins; ++j) wide[XAxis::folded(i)][j] += masses_[i][j];
+    for (std::size_t j = 0; j < YBins; ++j) {
+      std::array<double, XBins> wide{};
+      for (std::size_t i = 0; i < XBins; ++i) wide[XAxis::folded(i)] += masses_[i][j];
+      for (std::size_t i = 0; i < XBins; ++i) masses_[i][j] = wide[i];
     }
-    masses_ = wide;
   }
   void fold_y() noexcept {
-    Masses wide{};
-    for (std::size_t i = 0; i < XBins; ++i) {
-      for (std::size_t j = 0; j < YBins; ++j) wide[i][YAxis::folded(j)] += masses_[i][j];
+    for (auto& row : masses_) {
+      std::array<double, YBins> wide{};
+      for (std::size_t j = 0; j < YBins; ++j) wide[YAxis::folded(j)] += row[j];
+      row = wide;
     }
-    masses_ = wide;
   }
   void scale(double factor) noexcept {
     for (auto& row : masses_) {
