@@ -3,7 +3,7 @@
 #pragma once
 #include <array>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "dampline/identifier.hpp"
 
 namespace dampline::bench {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "app/identify/fault_findings.hpp"
+#include "app/identify/truck_result.hpp"
 #include "bench/guard_cases.hpp"
 #include "dampline/effect/judgement.hpp"
 #include "dampline/identifier.hpp"

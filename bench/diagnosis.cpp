@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-#include "app/explain/explain_truck.hpp"
-#include "app/explain/truck_pass.hpp"
+#include "app/diagnosis/truck/explain.hpp"
+#include "app/diagnosis/truck/pass.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "drivers/candump/line.hpp"
 #include "sim_hw/effects/registry.hpp"

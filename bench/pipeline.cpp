@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "dampline/basis/columns.hpp"
 #include "dampline/density/histogram.hpp"
 #include "dampline/density/joint_histogram.hpp"

@@ -10,7 +10,7 @@
 #include <new>
 #include <vector>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "app/live/lateness.hpp"
 #include "bench/fleet.hpp"
 #include "dampline/damping/estimator.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dampline/sample.hpp"
-#include "sim_hw/butterworth.hpp"
+#include "dampline/motion/butterworth.hpp"
 #include "sim_hw/effects/impulses.hpp"
 #include "sim_hw/sensors.hpp"
 #include "sim_hw/track.hpp"

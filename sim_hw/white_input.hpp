@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "dampline/motion/motion.hpp"
-#include "sim_hw/butterworth.hpp"
+#include "dampline/motion/butterworth.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline::sim {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "app/text/format.hpp"
 
 namespace dampline::app {
+
 namespace {
 
 constexpr double kNotableShare = 0.02;  // of the level: a viscous part worth speaking of
@@ -145,6 +148,193 @@ void fill_motion(const std::vector<Motion>& motion, const TruckRecord& record, R
   for (const Motion& m : motion)
     result.motion.push_back({record.time_s(m.tick), record.correction.deflection() * m.deflection_m,
                              record.correction.velocity() * m.velocity_mps});
+}
+
+namespace {
+
+constexpr std::size_t kMostSpans = 200;
+
+std::vector<Span> spoilt_spans(const Guard& guard, const Fault& fault, double nominal_hz,
+                               const TruckRecord& record) {
+  const auto second = std::max<std::int64_t>(std::llround(nominal_hz), 1);
+  std::vector<Span> spans;
+  const std::int64_t known = record.newest_tick - FaultLog::kSeconds * second;
+  for (std::int64_t tick = std::max(record.first_tick, known); tick <= record.newest_tick;
+       tick += second) {
+    if (!guard.spoilt(fault.kind, fault.channel, tick)) continue;
+    const double start_s = record.time_s(tick);
+    const double end_s = record.time_s(tick + second);
+    if (!spans.empty() && start_s - spans.back().end_s < 0.5) {
+      spans.back().end_s = end_s;
+    } else if (spans.size() < kMostSpans) {
+      spans.push_back({start_s, end_s});
+    }
+  }
+  return spans;
+}
+
+std::string warning_of(const DataFaults& faults) {
+  std::string names;
+  for (const FaultFinding& f : faults.list)
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", f.name, f.channel);
+  return "The data have faults, listed under data quality: " + names + ".";
+}
+
+}  // namespace
+
+void describe_faults(const FaultView& view, const TruckRecord& record, double nominal_hz,
+                     DataFaults& out) {
+  const auto own_s = [&](double time_s) {
+    return record.time_s(std::llround(time_s * nominal_hz));
+  };
+  for (const Fault& fault : view.list()) {
+    out.list.push_back({name_of(fault.kind),
+                        name_of(fault.channel),
+                        own_s(fault.time_s),
+                        own_s(fault.last_s),
+                        fault.size,
+                        fault.unit,
+                        fault.count,
+                        {}});
+  }
+  for (const std::uint64_t impacts : view.inputs.impacts) out.impacts += impacts;
+  out.speed_changes = view.inputs.speed_changes;
+  out.values_replaced = view.repairs.replaced;
+  out.samples_spoilt = view.repairs.spoilt;
+}
+
+DriftFinding finding_of(const ParameterDrift& drift) {
+  return {
+      name_of(drift.parameter), drift.step, drift.time_s,
+      drift.interval_s,         drift.gain, {100.0 * drift.change.value, 100.0 * drift.change.std}};
+}
+
+void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,
+                            const TruckRecord& record, double nominal_hz, RunResult& result) {
+  DataFaults& out = result.faults;
+  describe_faults(view, record, nominal_hz, out);
+  for (std::size_t i = 0; i < out.list.size(); ++i)
+    out.list[i].spans = spoilt_spans(guard, view.faults[i], nominal_hz, record);
+  if (drift.found) {
+    out.drift = finding_of(drift);
+    result.warnings.push_back("A parameter is not constant: " + describe_drift(*out.drift) +
+                              ". The values stated are means over the record.");
+  }
+  if (!out.list.empty()) result.warnings.push_back(warning_of(out));
+}
+
+void describe_alarms(const AlarmView& view, const TruckRecord& record, RunResult& result) {
+  const std::uint64_t held = std::min<std::uint64_t>(view.count, AlarmView::kMost);
+  for (std::uint64_t i = view.count - held; i < view.count; ++i) {
+    const AlarmView::Alarm& alarm = view.alarms[i % AlarmView::kMost];
+    const AlarmFinding finding{name_of(alarm.parameter), 100.0 * alarm.change,
+                               record.time_s(alarm.since_tick), record.time_s(alarm.tick)};
+    result.faults.alarms.push_back(finding);
+    result.warnings.push_back(
+        fmt::format("Alarm: {} ({}).", describe_alarm(finding), describe_alarm_figures()));
+  }
+}
+
+namespace {
+
+template <class Histogram>
+DensityTable density_table(const Histogram& histogram, const char* quantity, double factor) {
+  DensityTable table{quantity, histogram.share_outside(), {}};
+  for (std::size_t b = 0; b < Histogram::kBins; ++b)
+    table.rows.push_back(
+        {factor * histogram.axis().centre(b), histogram.density(b) / factor, histogram.mass(b)});
+  return table;
+}
+
+/// The broken line at `velocity_mps` on the branch of `side`; NaN outside its support.
+Estimate force_at(std::span<const CurvePoint> points, double velocity_mps, bool positive) {
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const CurvePoint& a = points[i];
+    const CurvePoint& b = points[i + 1];
+    const bool branch = positive ? a.velocity_mps >= 0.0 : b.velocity_mps <= 0.0;
+    if (!branch || !(a.velocity_mps < b.velocity_mps)) continue;
+    if (velocity_mps < a.velocity_mps || velocity_mps > b.velocity_mps) continue;
+    const double t = (velocity_mps - a.velocity_mps) / (b.velocity_mps - a.velocity_mps);
+    return {(1.0 - t) * a.force_n + t * b.force_n, (1.0 - t) * a.std_n + t * b.std_n};
+  }
+  return {kNothing, kNothing};
+}
+
+std::vector<Estimate> along(const std::vector<CurveRow>& curve, std::span<const CurvePoint> points,
+                            double nominal_per_true) {
+  std::vector<Estimate> out;
+  bool past_zero = false;
+  for (const CurveRow& row : curve) {
+    const bool positive = row.velocity_mps > 0.0 || past_zero;
+    past_zero = past_zero || row.velocity_mps == 0.0;
+    out.push_back(force_at(points, row.velocity_mps * nominal_per_true, positive));
+  }
+  return out;
+}
+
+std::vector<Objection> objections_of(const TrustVerdict& verdict) {
+  std::vector<Objection> out;
+  for (std::size_t i = 0; i < kReasons; ++i) {
+    const auto reason = static_cast<Reason>(i);
+    const Finding& finding = verdict[reason];
+    if (finding.violated) out.push_back({text(reason), finding.size, finding.limit, unit(reason)});
+  }
+  return out;
+}
+
+/// The same picture with its axes in other units.
+void stretch(PhasePicture& picture, double x, double y) {
+  picture.x_low *= x;
+  picture.x_high *= x;
+  picture.y_low *= y;
+  picture.y_high *= y;
+  for (auto& column : picture.density) {
+    for (float& density : column) density /= static_cast<float>(x * y);
+  }
+}
+
+}  // namespace
+
+void fill_densities(const FokkerPlanck& statistics, const TruckRecord& record, RunResult& result) {
+  if (statistics.samples() == 0) return;
+  result.densities = {
+      density_table(statistics.deflections(), "deflection_m", record.correction.deflection()),
+      density_table(statistics.velocities(), "velocity_mps", record.correction.velocity())};
+}
+
+void fill_phase(const PhaseView& view, const TruckRecord& record, RunResult& result) {
+  const auto phase = std::make_shared<PhaseSnapshot>();
+  view.snapshot(*phase);
+  const double y = record.correction.deflection();
+  const double v = record.correction.velocity();
+  stretch(phase->velocity_over_deflection, y, v);
+  stretch(phase->accel_over_deflection, y, 1.0);
+  stretch(phase->accel_over_velocity, v, 1.0);
+  phase->period.period_s /= record.correction.ratio;
+  phase->period.period_std_s /= record.correction.ratio;
+  for (std::size_t p = 0; p < kSectionPhases; ++p) {
+    for (std::size_t i = 0; i < phase->section_count[p]; ++i) {
+      phase->section[p][i].deflection_m *= y;
+      phase->section[p][i].velocity_mps *= v;
+    }
+  }
+  result.phase = phase;
+}
+
+void fill_methods(const FokkerPlanck& statistics, double mass_kg, double nominal_stiffness_npm,
+                  const TruckRecord& record, RunResult& result) {
+  const FokkerPlanckEstimates found = statistics.estimates(mass_kg, nominal_stiffness_npm);
+  const auto add = [&](const char* name, const char* title, const MethodResult& method) {
+    const std::span<const CurvePoint> points{method.curve.data(),
+                                             method.verdict.has_number ? method.points : 0};
+    result.methods.push_back({name, title, method.level_n, method.verdict.has_number,
+                              method.verdict.trusted, objections_of(method.verdict),
+                              along(result.curve, points, 1.0 / record.correction.velocity())});
+  };
+  add("fokker_planck_paper", "Fokker-Planck, Kisilowski and Urbanski 1987", found.paper);
+  add("fokker_planck_weak", "Fokker-Planck, weak form", found.weak);
+  add("known_input", "conditional mean with the known input", found.known_input);
 }
 
 }  // namespace dampline::app

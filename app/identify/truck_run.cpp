@@ -7,9 +7,8 @@
 #include <string_view>
 
 #include "app/error.hpp"
-#include "app/identify/other_methods.hpp"
-#include "app/identify/record_rate.hpp"
 #include "app/identify/truck_result.hpp"
+#include "app/record/rate.hpp"
 #include "app/run/state.hpp"
 #include "app/text/format.hpp"
 

@@ -7,13 +7,10 @@
 #include <string>
 
 #include "app/config/config.hpp"
-#include "app/identify/clipping_watch.hpp"
-#include "app/identify/convergence_history.hpp"
-#include "app/identify/excluded_list.hpp"
-#include "app/identify/fault_findings.hpp"
-#include "app/identify/motion_excerpt.hpp"
-#include "app/identify/rate_correction.hpp"
-#include "app/identify/sample_feed.hpp"
+#include "app/identify/collected.hpp"
+#include "app/identify/truck_result.hpp"
+#include "app/record/feed.hpp"
+#include "app/record/rate.hpp"
 #include "app/run/result.hpp"
 #include "dampline/effect/judgement.hpp"
 #include "dampline/identifier.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "app/error.hpp"
-#include "app/identify/can_channels.hpp"
-#include "app/identify/progress.hpp"
+#include "app/record/frames.hpp"
+#include "app/identify/identify_source.hpp"
 #include "app/live/digital_lines.hpp"
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "app/explain/explanation_json.hpp"
-#include "app/explain/truck_verdict.hpp"
+#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/verdict.hpp"
 
 namespace dampline::app {
 namespace {

@@ -8,8 +8,7 @@
 #include <thread>
 
 #include "app/error.hpp"
-#include "app/identify/can_channels.hpp"
-#include "app/identify/frame_counts.hpp"
+#include "app/record/frames.hpp"
 
 namespace dampline::app {
 namespace {

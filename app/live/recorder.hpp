@@ -5,8 +5,8 @@
 #include <mutex>
 #include <thread>
 
-#include "app/identify/event_list.hpp"
 #include "app/live/handover.hpp"
+#include "app/record/frames.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/error.hpp"
-#include "app/identify/frame_counts.hpp"
+#include "app/record/frames.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {

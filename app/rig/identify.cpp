@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "app/error.hpp"
-#include "app/identify/excluded_list.hpp"
+#include "app/identify/collected.hpp"
 #include "app/rig/record.hpp"
 #include "app/rig/result.hpp"
 #include "dampline/rig/survey.hpp"

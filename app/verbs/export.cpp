@@ -11,7 +11,7 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "app/identify/event_list.hpp"
+#include "app/record/frames.hpp"
 #include "app/verbs/output.hpp"
 #include "app/verbs/verbs.hpp"
 #include "drivers/blackbox/source.hpp"

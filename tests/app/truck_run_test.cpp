@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "app/error.hpp"
-#include "app/identify/excluded_list.hpp"
+#include "app/identify/collected.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::app {

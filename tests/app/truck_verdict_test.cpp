@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "app/explain/truck_verdict.hpp"
+#include "app/diagnosis/truck/verdict.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "app/explain/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation_json.hpp"
 
 namespace dampline::app {
 namespace {

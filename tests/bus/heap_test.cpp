@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "app/live/acquisition.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/source.hpp"

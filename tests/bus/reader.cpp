@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/source.hpp"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "dampline/density/joint_histogram.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline {

@@ -139,7 +139,7 @@ TEST(Explainer, ImpactsThatNoSensorSawAreNamed) {
   EXPECT_EQ(e.step[0].chosen.effect, Effect::kImpulsiveInput);
 }
 
-TEST(Explainer, ImpactsOnTheTwinTooAreNone) {
+TEST(Explainer, ImpactsOnTheSurrogateTooAreNone) {
   const Record record = explained("impulsive_input", 75);
   const Record sound = explained("", 79, 150.0, record.diagnosis->scale_m());
   const auto explainer = std::make_unique<Explainer>();

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "sim_hw/butterworth.hpp"
+#include "dampline/motion/butterworth.hpp"
 #include "tests/estimator/record.hpp"
 #include "tests/steps.hpp"
 
@@ -34,7 +34,7 @@ std::vector<Sample> prescribed(double rate_hz, double length_s) {
     const double w = 2.0 * std::numbers::pi * (f_hz + 0.1 * std::sin(7.0 * f_hz));
     sines.push_back({w, 3.0e-3, phase(random)});
   }
-  sim::ButterworthLowPass<3> filter{rate_hz / 3.0, kOversampling * rate_hz};
+  ButterworthLowPass<3> filter{rate_hz / 3.0, kOversampling * rate_hz};
   std::vector<Sample> out;
   const auto count = static_cast<std::int64_t>(length_s * rate_hz * kOversampling);
   for (std::int64_t i = 0; i < count; ++i) {

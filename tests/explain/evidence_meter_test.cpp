@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/explain/evidence_meter.hpp"
+#include "app/diagnosis/common/evidence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/diagnosis/rig/explain.hpp"
-#include "app/identify/recognised_columns.hpp"
+#include "app/record/columns.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::testing {

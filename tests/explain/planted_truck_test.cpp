@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "app/explain/explain_truck.hpp"
-#include "app/explain/explanation_json.hpp"
+#include "app/diagnosis/truck/explain.hpp"
+#include "app/diagnosis/truck/explanation_json.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::app {

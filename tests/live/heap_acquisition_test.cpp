@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "app/identify/can_channels.hpp"
+#include "app/record/frames.hpp"
 #include "app/live/acquisition.hpp"
 #include "app/live/live_explainer.hpp"
 #include "drivers/os/system_clock.hpp"

@@ -13,9 +13,9 @@
 #include <thread>
 
 #include "app/error.hpp"
-#include "app/explain/explain_truck.hpp"
-#include "app/explain/explanation_json.hpp"
-#include "app/identify/can_channels.hpp"
+#include "app/diagnosis/truck/explain.hpp"
+#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/record/frames.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/candump/line.hpp"
 #include "drivers/os/system_clock.hpp"

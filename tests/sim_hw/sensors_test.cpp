@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim_hw/butterworth.hpp"
+#include "dampline/motion/butterworth.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::sim {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/diagnosis/rig/trials.hpp"
-#include "app/explain/evidence_meter.hpp"
-#include "app/explain/signature_json.hpp"
+#include "app/diagnosis/common/evidence.hpp"
+#include "app/diagnosis/common/json.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app::rig {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "app/diagnosis/rig/regression.hpp"
-#include "app/explain/judged.hpp"
-#include "app/explain/signature.hpp"
+#include "app/diagnosis/common/json.hpp"
+#include "app/diagnosis/common/residual.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app::rig {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim_hw/butterworth.hpp"
+#include "dampline/motion/butterworth.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline::sim {

@@ -79,7 +79,7 @@ double vertex(const std::array<double, 2>& side, double middle) noexcept {
   return std::clamp(0.5 * (side[0] - side[1]) / curvature, -0.5, 0.5);
 }
 
-constexpr double kTwinGains = 2.0;  // a real effect gains more than so many times the twin's
+constexpr double kSurrogateGains = 2.0;  // a real effect gains more than so many times the surrogate's
 
 }  // namespace
 
@@ -364,28 +364,28 @@ Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanati
   return {fitter_.nmse_of(by.base_model, by.base), fitter_.nmse_of(by.model, by.final)};
 }
 
-double Explainer::left_of_twin(const Diagnosis& twin, const Model& model,
+double Explainer::left_of_surrogate(const Diagnosis& surrogate, const Model& model,
                                const ScaleWeights& weights, double target) noexcept {
-  if (twin.store().count() < kFewestEntries || !evidence_.load(twin.store())) return -1.0;
-  evidence_.weigh(twin.store(), weights);
+  if (surrogate.store().count() < kFewestEntries || !evidence_.load(surrogate.store())) return -1.0;
+  evidence_.weigh(surrogate.store(), weights);
   const ModelFit fit = fitter_.fit(model);
   return fit.ok ? fit.held_out_nmse * evidence_.total.at(kTarget, kTarget) / target : -1.0;
 }
 
-bool Explainer::apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& e) noexcept {
+bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts, Explanation& e) noexcept {
   const auto mean_of = [&](const ScaleWeights& weights, double target) {
-    const double first = left_of_twin(twins.base, e.base_model, weights, target);
-    if (twins.other_noise == nullptr || first < 0.0) return first;
-    const double second = left_of_twin(*twins.other_noise, e.base_model, weights, target);
+    const double first = left_of_surrogate(surrogates.base, e.base_model, weights, target);
+    if (surrogates.other_noise == nullptr || first < 0.0) return first;
+    const double second = left_of_surrogate(*surrogates.other_noise, e.base_model, weights, target);
     return second < 0.0 ? second : 0.5 * (first + second);
   };
   const double base_floor = mean_of(e.base_weight, e.base_target);
   if (base_floor < 0.0) return false;
   e.base_floor_nmse = base_floor;
-  if (!beats_twin(twins.base, e)) drop_steps(e);
+  if (!beats_surrogate(surrogates.base, e)) drop_steps(e);
   const Model remembering = remembering_part(e);
-  const bool remembers = twins.remembering != nullptr && remembering.count > e.base_count;
-  const double floor = remembers ? left_of_twin(*twins.remembering, remembering, e.weight, e.target)
+  const bool remembers = surrogates.remembering != nullptr && remembering.count > e.base_count;
+  const double floor = remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, e.target)
                                  : mean_of(e.weight, e.target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
@@ -407,17 +407,17 @@ Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
   return {fit.theta[term], std::sqrt(std::max(fit.covariance(term, term), 0.0))};
 }
 
-/// Large residuals, too, are rare in time on a twin without impacts: those of sticking.
-bool Explainer::beats_twin(const Diagnosis& twin, const Explanation& e) noexcept {
+/// Large residuals, too, are rare in time on a surrogate without impacts: those of sticking.
+bool Explainer::beats_surrogate(const Diagnosis& surrogate, const Explanation& e) noexcept {
   if (e.step_count == 0) return true;
-  double gain = twin.impulses().share();
+  double gain = surrogate.impulses().share();
   if (e.step[0].chosen.count > 0) {
-    const double without = left_of_twin(twin, e.base_model, e.base_weight, e.base_target);
+    const double without = left_of_surrogate(surrogate, e.base_model, e.base_weight, e.base_target);
     const double with =
-        left_of_twin(twin, e.base_model.with(e.step[0].chosen), e.base_weight, e.base_target);
+        left_of_surrogate(surrogate, e.base_model.with(e.step[0].chosen), e.base_weight, e.base_target);
     gain = with < 0.0 ? 0.0 : 1.0 - with / without;
   }
-  return e.step[0].gain >= kTwinGains * gain;
+  return e.step[0].gain >= kSurrogateGains * gain;
 }
 
 }  // namespace dampline::effect

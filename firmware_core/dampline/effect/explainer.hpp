@@ -53,19 +53,19 @@ class Explainer {
   [[nodiscard]] Estimate lateness(const Diagnosis& diagnosis, const Model& model,
                                   const Candidate& skew) noexcept;
 
-  struct Twins {
+  struct Surrogates {
     const Diagnosis& base;
     const Diagnosis* other_noise{nullptr};  ///< the same once more: the floor is the mean of both
     /// The base law with the memory of friction that was found: the floor is what a model with both
     /// leaves of it.
     const Diagnosis* remembering{nullptr};
   };
-  /// What a complete model leaves, from the twin: a record of the base law simulated on the same
+  /// What a complete model leaves, from the surrogate: a record of the base law simulated on the same
   /// input, with the sensors' noise and resolution, through the same Estimator and a Diagnosis of
   /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
-  /// on the twin, which has none, takes all effects back; concludes. False when a twin has too few
+  /// on the surrogate, which has none, takes all effects back; concludes. False when a surrogate has too few
   /// rows.
-  bool apply_floor(const Twins& twins, std::uint64_t impacts, Explanation& explanation) noexcept;
+  bool apply_floor(const Surrogates& surrogates, std::uint64_t impacts, Explanation& explanation) noexcept;
 
  private:
   struct Best {
@@ -98,12 +98,12 @@ class Explainer {
   /// its line, or in the lines before and after; 0: there is none.
   [[nodiscard]] std::array<double, 2> beside(const Model& model, std::size_t i, int apart,
                                              bool in_line) noexcept;
-  /// What a model leaves of a twin in a record's weights, as a share of the record's own sum of
-  /// squares; negative: the twin is too short.
-  [[nodiscard]] double left_of_twin(const Diagnosis& twin, const Model& model,
+  /// What a model leaves of a surrogate in a record's weights, as a share of the record's own sum of
+  /// squares; negative: the surrogate is too short.
+  [[nodiscard]] double left_of_surrogate(const Diagnosis& surrogate, const Model& model,
                                     const ScaleWeights& weights, double target) noexcept;
-  /// Whether the first effect gains clearly more than on a twin without it.
-  [[nodiscard]] bool beats_twin(const Diagnosis& twin, const Explanation& e) noexcept;
+  /// Whether the first effect gains clearly more than on a surrogate without it.
+  [[nodiscard]] bool beats_surrogate(const Diagnosis& surrogate, const Explanation& e) noexcept;
   void backward(Explanation& out, ModelFit& now) noexcept;
 
   Evidence evidence_;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/diagnosis/common/residual.hpp"
+#include "app/record/feed.hpp"
+#include "app/run/provenance.hpp"
+#include "dampline/motion/fractional_delay.hpp"
+#include "app/run/result.hpp"
+#include "dampline/effect/conclusion.hpp"
+#include "dampline/effect/judgement.hpp"
+
+namespace dampline::app {
+
+/// How well a record that was never fitted is predicted, before and after.
+struct Validated {
+  std::string record;
+  double nmse_before{0.0};
+  double nmse_after{0.0};
+};
+
+/// A truck record explained.
+struct Explained : effect::Judgement {
+  effect::Circumstances circumstances;  ///< of the record
+  LateChannel lateness;                 ///< of a channel that was set right for the explanation
+  /// By Effect: what looked like one at first and was none, and is no candidate any more.
+  std::array<bool, effect::kEffects> needless{};
+  std::vector<Validated> validation;
+  Signature signature;   ///< of what the final model leaves; rms 0: the record was read only once
+  RunResult identified;  ///< what identify says of the same record
+  std::string state;     ///< for state.dls
+  std::vector<InputFile> inputs;
+};
+
+struct ExplainOptions {
+  SourceOptions source;
+  std::vector<std::string> validation;  ///< records that are never fitted
+  bool show_progress{false};
+};
+
+/// Explains a truck's record. Throws RunError or UsageError; there is no partial result.
+[[nodiscard]] Explained explain_truck(const Config& config, const ExplainOptions& options);
+
+}  // namespace dampline::app

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/truck/looks.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "app/diagnosis/common/evidence.hpp"
+#include "app/diagnosis/truck/pass.hpp"
+#include "app/diagnosis/truck/points.hpp"
+#include "app/diagnosis/truck/verdict.hpp"
+
+namespace dampline::app {
+
+namespace {
+
+constexpr double kLeastTurn = 0.05;  // of the deflection's rms: smaller ones are noise
+constexpr double kLawReach = 2.5;    // of the velocity's rms
+
+EvidenceScale scale_of(const EstimatorConfig& core, const TruckPass& first) {
+  const double deflection_m = first.diagnosis().deflection_rms_m();
+  return {deflection_m, first.diagnosis().velocity_rms_mps(), kLeastTurn * deflection_m,
+          core.sample_rate_hz, first.run->time_s()};
+}
+
+/// One of the declared law; one that has friction's memory, too, or else one with other noise.
+using Surrogates = std::array<std::unique_ptr<SurrogatePass>, 2>;
+
+Surrogates surrogates_of(const EstimatorConfig& core, const effect::SurrogateConfig& declared,
+                         const effect::Explanation& e) {
+  Surrogates out;
+  if (!is_physical(declared)) return out;
+  out[0] = std::make_unique<SurrogatePass>(core, declared, e.grids);
+  effect::SurrogateConfig second = with_memory(declared, e);
+  ++second.seed;
+  out[1] = std::make_unique<SurrogatePass>(core, second, e.grids);
+  return out;
+}
+
+/// The record again, with the surrogates.
+void read_again(const Config& config, const ExplainOptions& options, const EstimatorConfig& core,
+                const TruckPass& first, const Surrogates& surrogates, Explained& out) {
+  EvidenceMeter meter{scale_of(core, first)};
+  TruckPoints points{core.sample_rate_hz,
+                     core.moving_mass_kg,
+                     out.explanation,
+                     {[&](const EvidencePoint& p) { meter.add(p); }, [&] { meter.gap(); }}};
+  TruckPassOptions again{out.explanation.grids, out.lateness, options.show_progress, {}};
+  again.watch = [&](const Sample& sample, const UpdateResult& result,
+                    const effect::Diagnosis& diagnosis) {
+    points.take(sample, result, diagnosis);
+    for (const auto& surrogate : surrogates)
+      if (surrogate) surrogate->take(sample);
+  };
+  static_cast<void>(pass_of(config, options.source, again));
+  Evidence& evidence = out.identified.evidence;
+  evidence = {};
+  meter.fill(evidence);
+  evidence.law = truck_law(out.explanation, core.moving_mass_kg,
+                           kLawReach * first.diagnosis().velocity_rms_mps());
+  out.signature = meter.signature();
+}
+
+}  // namespace
+
+bool can_read_again(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) ||
+         std::filesystem::is_directory(path, ignored);
+}
+
+void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
+                const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
+  if (!can_read_again(options.source.path)) return;
+  EstimatorConfig core = estimator_config(config);
+  core.screen = first.run->config().estimator.screen;
+  const effect::SurrogateConfig declared =
+      surrogate_config(core, out.explanation, noise_of_record(first, noise, core.screen.step_mps2));
+  const Surrogates surrogates = surrogates_of(core, declared, out.explanation);
+  read_again(config, options, core, first, surrogates, out);
+  if (!surrogates[0]) return;
+  const std::size_t steps = out.explanation.step_count;
+  const auto conclusion = out.explanation.conclusion;
+  const effect::Diagnosis* const second = &surrogates[1]->finish();
+  const bool remembers = surrogates[1]->remembers();
+  explainer.apply_floor(
+      {surrogates[0]->finish(), remembers ? nullptr : second, remembers ? second : nullptr},
+      out.identified.faults.impacts, out.explanation);
+  if (out.withheld || out.drifts) out.explanation.conclusion = conclusion;
+  // A surrogate that shows the same effect has taken it back: what is left is the base's.
+  if (out.explanation.step_count == steps) return;
+  out.lateness = {};
+  read_again(config, options, core, first, {}, out);
+}
+
+namespace {
+
+constexpr int kRounds = 3;
+constexpr double kEnoughS = 20e-6;  // of a channel's lateness
+constexpr double kSettled = 0.998;  // of the error of the round before
+
+/// The late channel among an explanation's steps, or null.
+const effect::Step* late_step(const effect::Explanation& e) {
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    if (e.step[i].chosen.effect == effect::Effect::kTimeSkew) return &e.step[i];
+  return nullptr;
+}
+
+void set_late(effect::Explanation& e, const Estimate& late_s) {
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    if (e.step[i].chosen.effect == effect::Effect::kTimeSkew)
+      e.step[i].parameter[0].estimate = late_s;
+}
+
+/// One reading more.
+class CloserLook {
+ public:
+  CloserLook(const Config& config, const ExplainOptions& options, const TruckPass& first,
+             const FrameNoise& noise, effect::Explainer& explainer)
+      : config_{config}, options_{options}, core_{estimator_config(config)}, explainer_{explainer} {
+    core_.screen = first.run->config().estimator.screen;
+    noise_mps2_ = noise_of_record(first, noise, core_.screen.step_mps2);
+  }
+
+  /// Explains with these grids and a channel set right; `left`: how late it still is.
+  effect::Explanation explain(const Explained& known, const effect::Grids& grids,
+                              const LateChannel& lateness, Estimate& left) {
+    TruckPassOptions reading{grids, lateness, options_.show_progress, {}};
+    const effect::SurrogateConfig law =
+        with_memory(surrogate_config(core_, known.explanation, noise_mps2_), known.explanation);
+    const bool late = late_step(known.explanation) != nullptr;
+    std::unique_ptr<SurrogatePass> surrogate;
+    if (late && is_physical(law)) surrogate = std::make_unique<SurrogatePass>(core_, law, grids);
+    reading.watch = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
+      if (surrogate) surrogate->take(sample);
+    };
+    const TruckPass pass = pass_of(config_, options_.source, reading);
+    effect::ExplainerConfig wanted = explainer_config(config_, known);
+    wanted.known = &known.explanation;
+    effect::Explanation out = explainer_.explain(pass.diagnosis(), wanted);
+    if (late) left = lateness_left(pass.diagnosis(), surrogate.get(), out);
+    return out;
+  }
+
+ private:
+  /// Errors of the velocity's phase look like lateness, too, and do so on the surrogate.
+  Estimate lateness_left(const effect::Diagnosis& diagnosis, SurrogatePass* surrogate,
+                         const effect::Explanation& e) {
+    const effect::Candidate& skew = late_step(e)->chosen;
+    Estimate out = explainer_.lateness(diagnosis, e.model, skew);
+    if (surrogate == nullptr) return out;
+    const Estimate bias =
+        explainer_.lateness(surrogate->finish(), effect::remembering_part(e), skew);
+    return {out.value - bias.value, std::hypot(out.std, bias.std)};
+  }
+
+  const Config& config_;
+  const ExplainOptions& options_;
+  EstimatorConfig core_;
+  effect::Explainer& explainer_;
+  std::array<double, kChannels> noise_mps2_{};
+};
+
+}  // namespace
+
+void look_closer(const Config& config, const ExplainOptions& options, const TruckPass& first,
+                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
+  if (!can_read_again(options.source.path)) return;
+  CloserLook look{config, options, first, noise, explainer};
+  Explained now = out;
+  LateChannel lateness;
+  const effect::Step* const late = late_step(out.explanation);
+  if (late != nullptr) lateness = {late->chosen.form, late->parameter[0].estimate.value};
+  for (int round = 0; round < kRounds; ++round) {
+    effect::Grids grids;
+    const bool has_grids = effect::draw_together(now.explanation, round, grids);
+    if (late == nullptr && !has_grids) return;
+    const double before = now.explanation.final.held_out_nmse;
+    Estimate left;
+    now.explanation = look.explain(now, grids, lateness, left);
+    if (!now.explanation.final.ok) return;
+    now.lateness = lateness;
+    lateness.late_s += left.value;
+    if (late != nullptr) set_late(now.explanation, {lateness.late_s, left.std});
+    const bool settled = now.explanation.final.held_out_nmse > kSettled * before;
+    const bool set_right = late == nullptr || std::abs(left.value) < kEnoughS;
+    if (set_right && (!has_grids || (round > 0 && settled))) break;
+  }
+  const double limit =
+      (late != nullptr ? out.explanation.base : out.explanation.final).held_out_nmse;
+  if (!(kSettled * now.explanation.final.held_out_nmse < limit)) return;
+  out.explanation = now.explanation;
+  out.lateness = now.lateness;
+}
+
+}  // namespace dampline::app

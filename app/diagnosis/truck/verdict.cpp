@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/truck/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace dampline::app {
+
+namespace {
+
+constexpr double kBelowFloor = 0.85;
+constexpr double kFaintGain = 0.025;
+
+/// What is already less than sensors and rounding leave has no room for one effect more; for the
+/// first, which may be large beside a floor that is too high, only where it gains little.
+bool is_below_floor(const effect::Step& step, bool first, double floor_nmse) {
+  if (first && step.gain > kFaintGain) return false;
+  return step.held_out_nmse_before < kBelowFloor * floor_nmse;
+}
+
+bool has(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+}  // namespace
+
+effect::ExplainerConfig explainer_config(const Config& config) {
+  effect::ExplainerConfig out;
+  out.moving_mass_kg = config.car.moving_mass_kg;
+  out.base_viscous = has(config.model.base, "viscous");
+  const auto& wanted = config.model.candidates;
+  for (std::size_t i = 0; i < effect::kEffects; ++i) {
+    const char* name = effect::name_of(static_cast<effect::Effect>(i));
+    out.allowed[i] = (has(wanted, "all") || has(wanted, name)) && !has(config.model.base, name);
+  }
+  return out;
+}
+
+effect::ExplainerConfig explainer_config(const Config& config, const Explained& known) {
+  effect::ExplainerConfig out = explainer_config(config);
+  disallow_mimics(known.circumstances.faults.list(), out);
+  for (std::size_t i = 0; i < effect::kEffects; ++i)
+    out.allowed[i] = out.allowed[i] && !known.needless[i];
+  return out;
+}
+
+bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
+                effect::Explainer& explainer, Explained& out) {
+  effect::judge(diagnosis.store(), diagnosis.impulses(), diagnosis.grids(),
+                explainer_config(config, out), out.circumstances, explainer, out);
+  return out.explanation.conclusion != effect::Conclusion::kNotReady;
+}
+
+effect::Effect needless_effect(const effect::Explanation& e) noexcept {
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    const effect::Step& step = e.step[i];
+    const Estimate& first = step.parameter[0].estimate;
+    if (step.chosen.effect == effect::Effect::kTimeSkew && std::abs(first.value) < 2.0 * first.std)
+      return step.chosen.effect;
+    if (is_below_floor(step, i == 0, e.floor_nmse)) return step.chosen.effect;
+  }
+  return effect::Effect::kUnknown;
+}
+
+double left_nmse(const Explained& explained) noexcept {
+  const effect::Explanation& e = explained.explanation;
+  if (!explained.drifts) return e.final.held_out_nmse;
+  return e.base.held_out_nmse * (1.0 - explained.identified.faults.drift->gain);
+}
+
+double left_over_floor(const Explained& explained) noexcept {
+  const effect::Explanation& e = explained.explanation;
+  if (!explained.drifts) return floor_ratio(e);
+  return e.floor_nmse > 0.0 ? left_nmse(explained) / e.floor_nmse : 0.0;
+}
+
+effect::Conclusion conclusion_of(const Explained& explained) noexcept {
+  if (!explained.drifts) return explained.explanation.conclusion;
+  const double ratio = left_over_floor(explained);
+  return ratio > 0.0 && ratio < effect::kIncompleteAbove ? effect::Conclusion::kExplained
+                                                         : effect::Conclusion::kPartlyExplained;
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "app/config/config.hpp"
+#include "app/diagnosis/truck/explain.hpp"
+#include "dampline/effect/explainer.hpp"
+
+namespace dampline::app {
+
+/// What the base model holds and which effects may be added to it.
+[[nodiscard]] effect::ExplainerConfig explainer_config(const Config& config);
+/// The same without the effects that the record's faults look like and those that are needless.
+[[nodiscard]] effect::ExplainerConfig explainer_config(const Config& config,
+                                                       const Explained& known);
+
+/// Explains the sums of a record under its circumstances. False: the record is too short.
+[[nodiscard]] bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
+                              effect::Explainer& explainer, Explained& out);
+
+/// An effect that was added and is none: a channel late by less than twice what its lateness may be
+/// wrong by, or a later or faint one beside a model that left less without it than sensors and
+/// rounding do. kUnknown where each is needed.
+[[nodiscard]] effect::Effect needless_effect(const effect::Explanation& explanation) noexcept;
+
+/// What the final model leaves, held out: also where it has a parameter that changes.
+[[nodiscard]] double left_nmse(const Explained& explained) noexcept;
+/// The same over the floor; 0 where that is unknown.
+[[nodiscard]] double left_over_floor(const Explained& explained) noexcept;
+[[nodiscard]] effect::Conclusion conclusion_of(const Explained& explained) noexcept;
+
+}  // namespace dampline::app

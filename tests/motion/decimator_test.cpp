@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/motion/decimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/error.hpp"
+#include "app/record/rate.hpp"
+#include "tests/drivers/temporary_file.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr double kRateHz = 1000.0;
+constexpr int kFactor = 3;
+
+Sample tone(std::int64_t tick, double hz) {
+  const double time_s = static_cast<double>(tick) / kRateHz;
+  const double a = std::cos(2.0 * M_PI * hz * time_s);
+  return {tick, std::llround(1e9 * time_s), {a, 2.0 * a, 1.0}, 0};
+}
+
+std::vector<Sample> decimated(const std::vector<Sample>& record) {
+  Decimator<26> decimator{kFactor};
+  std::vector<Sample> out;
+  for (const Sample& in : record)
+    if (Sample sample; decimator.take(in, sample)) out.push_back(sample);
+  return out;
+}
+
+std::vector<Sample> tones(double hz) {
+  std::vector<Sample> out;
+  for (std::int64_t tick = 0; tick < 1500; ++tick) out.push_back(tone(tick, hz));
+  return out;
+}
+
+TEST(Decimator, TakesWholeFactorsAboveFourHundredHertz) {
+  EXPECT_EQ(decimation(300.0), 1);
+  EXPECT_EQ(decimation(400.0), 1);
+  EXPECT_EQ(decimation(500.0), 2);
+  EXPECT_EQ(decimation(kRateHz), kFactor);
+  EXPECT_EQ(decimation(10240.0), 26);
+}
+
+TEST(Decimator, KeepsSlowTonesWithTheirPhaseAndTheMean) {
+  for (const double hz : {0.5, 20.0, 90.0, 0.38 * kRateHz / kFactor}) {
+    const auto out = decimated(tones(hz));
+    ASSERT_GT(out.size(), 400U);
+    for (const Sample& sample : out) {
+      const Sample truth = tone(sample.tick * kFactor, hz);
+      EXPECT_EQ(sample.time_ns, truth.time_ns);
+      for (std::size_t c = 0; c < kChannels; ++c)
+        EXPECT_NEAR(sample.accel_mps2[c], truth.accel_mps2[c], 2.5e-3) << hz << " Hz";
+    }
+  }
+}
+
+TEST(Decimator, LeavesNoAliases) {
+  for (const double hz : {0.5 * kRateHz / kFactor + 0.5, 240.0, 333.3, 490.0})
+    for (const Sample& sample : decimated(tones(hz)))
+      EXPECT_LT(std::abs(sample.accel_mps2[0]), 1.5e-3) << hz << " Hz";
+}
+
+TEST(Decimator, LeavesOutWhatAMissingSampleWouldHaveBeenPartOf) {
+  auto record = tones(20.0);
+  record.erase(record.begin() + 699);
+  const auto out = decimated(record);
+  const auto whole = decimated(tones(20.0));
+  ASSERT_LT(out.size(), whole.size());
+  EXPECT_EQ(whole.size() - out.size(), 33U);  // 16 to either side
+  for (const Sample& sample : out) {
+    EXPECT_GT(std::abs(sample.tick * kFactor - 699), 16 * kFactor);
+    EXPECT_NEAR(sample.accel_mps2[0], tone(sample.tick * kFactor, 20.0).accel_mps2[0], 2.5e-3);
+  }
+}
+
+TEST(Decimator, PassesOnWhatIsWrongInAChannel) {
+  auto record = tones(20.0);
+  record[600].accel_mps2[1] = std::numeric_limits<double>::quiet_NaN();
+  record[900].saturated = 4;
+  std::size_t wrong = 0;
+  std::size_t saturated = 0;
+  for (const Sample& sample : decimated(record)) {
+    EXPECT_TRUE(std::isfinite(sample.accel_mps2[0]));
+    wrong += std::isnan(sample.accel_mps2[1]) ? 1U : 0U;
+    saturated += sample.saturated == 4 ? 1U : 0U;
+  }
+  EXPECT_EQ(wrong, 33U);
+  EXPECT_EQ(saturated, 3U);
+}
+
+std::string rows(double rate_hz) {
+  std::string out = "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
+  for (int i = 0; i < 50; ++i) out += std::to_string(i / rate_hz) + ",0.1,0.2,0.3\n";
+  return out;
+}
+
+TEST(RecordRate, IsTheFilesOwnWhereNoneWasSet) {
+  const dampline::testing::TemporaryFile file{rows(512.0), ".csv"};
+  const SourceOptions source{file.path(), false};
+  const Config found = with_record_rate({}, source, SourceKind::kTruckCsv);
+  EXPECT_NEAR(found.input.sample_rate_hz, 512.0, 0.1);
+  EXPECT_NEAR(truck_rate_hz(found.input), 256.0, 0.05);
+  const Config set = parse_config("[input]\nsample_rate_hz = 300.0\n", "test");
+  EXPECT_EQ(with_record_rate(set, source, SourceKind::kTruckCsv).input.sample_rate_hz, 300.0);
+}
+
+}  // namespace
+}  // namespace dampline::app

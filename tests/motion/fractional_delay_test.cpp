@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/motion/fractional_delay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace dampline::app {
+namespace {
+
+constexpr double kTruckRateHz = 300.0;
+
+/// Tones up to 120 Hz, at a time.
+double tones(double time_s) {
+  double sum = 0.0;
+  for (const double hz : {1.3, 9.7, 41.0, 88.0, 120.0})
+    sum += std::cos(2.0 * std::numbers::pi * hz * time_s + hz);
+  return sum;
+}
+
+Sample sample_at(std::int64_t tick, double late_s) {
+  const double t = static_cast<double>(tick) / kTruckRateHz;
+  return {.tick = tick, .accel_mps2 = {tones(t), tones(t - late_s), tones(t)}};
+}
+
+TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
+  for (const double late_s : {0.0021, -0.0007, 0.0117}) {
+    FractionalDelay alignment{{1, late_s}, kTruckRateHz};
+    int seen = 0;
+    for (std::int64_t tick = 5; tick < 400; ++tick) {
+      const auto out = alignment.next(sample_at(tick, late_s));
+      if (!out) continue;
+      ++seen;
+      EXPECT_EQ(out->tick, tick - FractionalDelay::kHalf);
+      const double truth = tones(static_cast<double>(out->tick) / kTruckRateHz);
+      EXPECT_NEAR(out->accel_mps2[1], truth, 0.01) << late_s;
+      EXPECT_EQ(out->accel_mps2[0], truth);
+    }
+    EXPECT_EQ(seen, 395 - 2 * FractionalDelay::kHalf);
+  }
+}
+
+TEST(FractionalDelay, StartsAnewAfterAGapAndPassesOnWhatIsNoNumber) {
+  FractionalDelay alignment{{0, 0.001}, kTruckRateHz};
+  for (std::int64_t tick = 0; tick < 100; ++tick)
+    static_cast<void>(alignment.next(sample_at(tick, 0.0)));
+  EXPECT_FALSE(alignment.next(sample_at(101, 0.0)));
+  Sample hole = sample_at(102, 0.0);
+  hole.accel_mps2[2] = std::numeric_limits<double>::quiet_NaN();
+  const auto passed = alignment.next(hole);
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->tick, 102);
+  std::int64_t first = 0;
+  for (std::int64_t tick = 103; first == 0 && tick < 300; ++tick) {
+    const auto out = alignment.next(sample_at(tick, 0.0));
+    if (out) first = out->tick;
+  }
+  EXPECT_EQ(first, 103 + FractionalDelay::kHalf);
+}
+
+}  // namespace
+}  // namespace dampline::app
