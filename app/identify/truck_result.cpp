@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/text/format.hpp"
+#include "app/text/summary.hpp"
 
 namespace dampline::app {
 

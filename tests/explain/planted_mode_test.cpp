@@ -119,7 +119,7 @@ TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
   Eigen::VectorXd ramp{500};
   for (Eigen::Index i = 0; i < ramp.size(); ++i)
     ramp[i] = 0.4 * static_cast<double>(i) * kIntervalS;
-  const Eigen::VectorXd out = through_mode(ramp, mode, kIntervalS);
+  const Eigen::VectorXd out = rig::through_mode(ramp, mode, kIntervalS);
   const double w = 2.0 * M_PI * mode.hz;
   const double wd = w * std::sqrt(1.0 - mode.damping * mode.damping);
   for (Eigen::Index i = 0; i < ramp.size(); ++i) {

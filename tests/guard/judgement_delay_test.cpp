@@ -22,7 +22,7 @@ constexpr std::size_t kWait = 24 * 300;
 struct Held {
   std::vector<Sample> in;
   std::vector<Sample> out;
-  JudgementDelay::Counts counts;
+  RepairCounts counts;
 };
 
 std::vector<Sample> record_of(double length_s, const sim::RecordFaultConfig& faults) {
