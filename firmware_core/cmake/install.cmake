@@ -21,10 +21,6 @@ function(pkg_config name description requires flags)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT core)
 endfunction()
-set(cxx_flags "-std=c++20 -ffp-contract=off")
-if(DAMPLINE_GOLDEN)
-  string(APPEND cxx_flags " -DEIGEN_DONT_VECTORIZE")
-endif()
 pkg_config(dampline "damping of a freight-car truck, from accelerations in service (C++20)"
-           "Requires: eigen3 >= 3.4" "${cxx_flags}")
+           "Requires: eigen3 >= 3.4" "-std=c++20 -ffp-contract=off -DEIGEN_DONT_VECTORIZE")
 pkg_config(dampline-c "damping of a freight-car truck, from accelerations in service (C)" "" "")
