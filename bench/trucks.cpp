@@ -10,8 +10,8 @@
 #include <new>
 #include <vector>
 
-#include "app/record/frames.hpp"
 #include "app/live/lateness.hpp"
+#include "app/record/frames.hpp"
 #include "bench/fleet.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/sample/assembler.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "dampline/sample.hpp"
 #include "dampline/motion/butterworth.hpp"
+#include "dampline/sample.hpp"
 #include "sim_hw/effects/impulses.hpp"
 #include "sim_hw/sensors.hpp"
 #include "sim_hw/track.hpp"

@@ -2,8 +2,8 @@
 #pragma once
 #include <cstdint>
 
-#include "dampline/motion/motion.hpp"
 #include "dampline/motion/butterworth.hpp"
+#include "dampline/motion/motion.hpp"
 #include "sim_hw/noise.hpp"
 
 namespace dampline::sim {

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "app/error.hpp"
-#include "app/record/frames.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/digital_lines.hpp"
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
+#include "app/record/frames.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/json.hpp"
 #include "app/text/format.hpp"

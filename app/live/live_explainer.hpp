@@ -34,8 +34,8 @@ class LiveExplainer {
 
  private:
   static constexpr double kEveryS = 8.0;  // between two beginnings
-  /// Who works: the acquisition waits, copies the sums and then what else is known, or the judge has
-  /// the copies.
+  /// Who works: the acquisition waits, copies the sums and then what else is known, or the judge
+  /// has the copies.
   enum class Turn : std::uint8_t { kWait, kCopy, kCircumstances, kJudge };
 
   void take(const Sample& sample) noexcept;

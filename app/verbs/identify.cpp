@@ -13,9 +13,9 @@
 
 #include "app/config/config.hpp"
 #include "app/diagnosis/rig/explain.hpp"
-#include "app/error.hpp"
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/interface.hpp"
 #include "app/record/columns.hpp"

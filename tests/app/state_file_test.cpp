@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/run/state.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "app/error.hpp"
+#include "app/run/state.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
 #include "sim_hw/simulation.hpp"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/diagnosis/truck/verdict.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/verdict.hpp"
 
 namespace dampline::app {
 namespace {

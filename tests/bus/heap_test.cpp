@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "app/record/frames.hpp"
 #include "app/live/acquisition.hpp"
+#include "app/record/frames.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/source.hpp"
 #include "tests/bus/bus.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "dampline/effect/laws.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "dampline/effect/laws.hpp"
 
 namespace dampline::effect {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "dampline/effect/rows.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 #include <numbers>
-
-#include "dampline/effect/rows.hpp"
 
 namespace dampline::effect {
 namespace {

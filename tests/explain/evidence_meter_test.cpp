@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "app/diagnosis/common/evidence.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <random>
+
+#include "app/diagnosis/common/evidence.hpp"
 
 namespace dampline::app {
 namespace {

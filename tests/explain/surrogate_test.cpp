@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The surrogate against closed forms, and the floor that it gives against clean records, whose error is
-// the floor.
+// The surrogate against closed forms, and the floor that it gives against clean records, whose
+// error is the floor.
 #include "dampline/effect/surrogate.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <limits>
 #include <memory>
 
-#include "dampline/motion/frame_noise.hpp"
 #include "dampline/effect/explainer.hpp"
+#include "dampline/motion/frame_noise.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/simulation.hpp"
 

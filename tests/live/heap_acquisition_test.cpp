@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "app/record/frames.hpp"
 #include "app/live/acquisition.hpp"
 #include "app/live/live_explainer.hpp"
+#include "app/record/frames.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/simulated_source.hpp"
 #include "sim_hw/simulation.hpp"

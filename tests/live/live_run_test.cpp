@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "app/error.hpp"
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/error.hpp"
 #include "app/record/frames.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/candump/line.hpp"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "dampline/sample/signal.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "dampline/sample/channel.hpp"
-#include "dampline/sample/signal.hpp"
 
 namespace dampline {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/diagnosis/rig/trials.hpp"
 #include "app/diagnosis/common/evidence.hpp"
 #include "app/diagnosis/common/json.hpp"
+#include "app/diagnosis/rig/trials.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app::rig {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "app/diagnosis/rig/regression.hpp"
 #include "app/diagnosis/common/json.hpp"
 #include "app/diagnosis/common/residual.hpp"
+#include "app/diagnosis/rig/regression.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app::rig {

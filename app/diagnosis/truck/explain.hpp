@@ -8,10 +8,10 @@
 #include "app/diagnosis/common/residual.hpp"
 #include "app/record/feed.hpp"
 #include "app/run/provenance.hpp"
-#include "dampline/motion/fractional_delay.hpp"
 #include "app/run/result.hpp"
 #include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/judgement.hpp"
+#include "dampline/motion/fractional_delay.hpp"
 
 namespace dampline::app {
 

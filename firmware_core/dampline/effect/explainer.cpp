@@ -79,7 +79,8 @@ double vertex(const std::array<double, 2>& side, double middle) noexcept {
   return std::clamp(0.5 * (side[0] - side[1]) / curvature, -0.5, 0.5);
 }
 
-constexpr double kSurrogateGains = 2.0;  // a real effect gains more than so many times the surrogate's
+constexpr double kSurrogateGains =
+    2.0;  // a real effect gains more than so many times the surrogate's
 
 }  // namespace
 
@@ -365,14 +366,15 @@ Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanati
 }
 
 double Explainer::left_of_surrogate(const Diagnosis& surrogate, const Model& model,
-                               const ScaleWeights& weights, double target) noexcept {
+                                    const ScaleWeights& weights, double target) noexcept {
   if (surrogate.store().count() < kFewestEntries || !evidence_.load(surrogate.store())) return -1.0;
   evidence_.weigh(surrogate.store(), weights);
   const ModelFit fit = fitter_.fit(model);
   return fit.ok ? fit.held_out_nmse * evidence_.total.at(kTarget, kTarget) / target : -1.0;
 }
 
-bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts, Explanation& e) noexcept {
+bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
+                            Explanation& e) noexcept {
   const auto mean_of = [&](const ScaleWeights& weights, double target) {
     const double first = left_of_surrogate(surrogates.base, e.base_model, weights, target);
     if (surrogates.other_noise == nullptr || first < 0.0) return first;
@@ -385,8 +387,9 @@ bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
   if (!beats_surrogate(surrogates.base, e)) drop_steps(e);
   const Model remembering = remembering_part(e);
   const bool remembers = surrogates.remembering != nullptr && remembering.count > e.base_count;
-  const double floor = remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, e.target)
-                                 : mean_of(e.weight, e.target);
+  const double floor =
+      remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, e.target)
+                : mean_of(e.weight, e.target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
   conclude(impacts, e);
@@ -413,8 +416,8 @@ bool Explainer::beats_surrogate(const Diagnosis& surrogate, const Explanation& e
   double gain = surrogate.impulses().share();
   if (e.step[0].chosen.count > 0) {
     const double without = left_of_surrogate(surrogate, e.base_model, e.base_weight, e.base_target);
-    const double with =
-        left_of_surrogate(surrogate, e.base_model.with(e.step[0].chosen), e.base_weight, e.base_target);
+    const double with = left_of_surrogate(surrogate, e.base_model.with(e.step[0].chosen),
+                                          e.base_weight, e.base_target);
     gain = with < 0.0 ? 0.0 : 1.0 - with / without;
   }
   return e.step[0].gain >= kSurrogateGains * gain;

@@ -60,12 +60,13 @@ class Explainer {
     /// leaves of it.
     const Diagnosis* remembering{nullptr};
   };
-  /// What a complete model leaves, from the surrogate: a record of the base law simulated on the same
-  /// input, with the sensors' noise and resolution, through the same Estimator and a Diagnosis of
-  /// the same scale. Sets the floors; where the first effect gains no more than twice what it gains
-  /// on the surrogate, which has none, takes all effects back; concludes. False when a surrogate has too few
-  /// rows.
-  bool apply_floor(const Surrogates& surrogates, std::uint64_t impacts, Explanation& explanation) noexcept;
+  /// What a complete model leaves, from the surrogate: a record of the base law simulated on the
+  /// same input, with the sensors' noise and resolution, through the same Estimator and a Diagnosis
+  /// of the same scale. Sets the floors; where the first effect gains no more than twice what it
+  /// gains on the surrogate, which has none, takes all effects back; concludes. False when a
+  /// surrogate has too few rows.
+  bool apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
+                   Explanation& explanation) noexcept;
 
  private:
   struct Best {
@@ -98,10 +99,10 @@ class Explainer {
   /// its line, or in the lines before and after; 0: there is none.
   [[nodiscard]] std::array<double, 2> beside(const Model& model, std::size_t i, int apart,
                                              bool in_line) noexcept;
-  /// What a model leaves of a surrogate in a record's weights, as a share of the record's own sum of
-  /// squares; negative: the surrogate is too short.
+  /// What a model leaves of a surrogate in a record's weights, as a share of the record's own sum
+  /// of squares; negative: the surrogate is too short.
   [[nodiscard]] double left_of_surrogate(const Diagnosis& surrogate, const Model& model,
-                                    const ScaleWeights& weights, double target) noexcept;
+                                         const ScaleWeights& weights, double target) noexcept;
   /// Whether the first effect gains clearly more than on a surrogate without it.
   [[nodiscard]] bool beats_surrogate(const Diagnosis& surrogate, const Explanation& e) noexcept;
   void backward(Explanation& out, ModelFit& now) noexcept;

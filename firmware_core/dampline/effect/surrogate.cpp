@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "dampline/motion/fractional_delay.hpp"
 #include "dampline/motion/anti_alias.hpp"
+#include "dampline/motion/fractional_delay.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -16,13 +16,14 @@ constexpr double kRamp = 0.05;         // of a gap: where the force rises
 constexpr double kMostGivenBack = 2.0;
 constexpr std::size_t kDesignBins = 512;
 constexpr std::uint64_t kStream = 3;  // of random numbers
-constexpr double kSteepest = 0.8;  // slope times step that Runge-Kutta is trusted with
+constexpr double kSteepest = 0.8;     // slope times step that Runge-Kutta is trusted with
 
 ButterworthLowPass<kChannels> filter_of(const SurrogateConfig& config, int fine) {
   return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, fine * config.sample_rate_hz};
 }
 
-/// What the sensors' filter took of a motion, to be given back: the surrogate is seen through it again.
+/// What the sensors' filter took of a motion, to be given back: the surrogate is seen through it
+/// again.
 double given_back(const SurrogateConfig& config, double f_hz) {
   if (config.anti_alias_hz <= 0.0) return 1.0;
   return std::min(std::sqrt(butterworth_loss(f_hz / config.anti_alias_hz, 4)), kMostGivenBack);
@@ -36,9 +37,7 @@ bool is_number(const Sample& sample) {
 }  // namespace
 
 Surrogate::Surrogate(const SurrogateConfig& config)
-    : config_{config},
-      filter_{filter_of(config, kFine)},
-      noise_{config.seed, kStream} {
+    : config_{config}, filter_{filter_of(config, kFine)}, noise_{config.seed, kStream} {
   set_taps();
   const double sliding_mps2 =
       config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "dampline/sample.hpp"
 #include "dampline/motion/butterworth.hpp"
 #include "dampline/numeric/random.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::effect {
 
@@ -38,8 +38,8 @@ struct SurrogateConfig {
 class Surrogate {
  public:
   explicit Surrogate(const SurrogateConfig& config);
-  /// Takes a sample; the surrogate's of the one before, where there is one. Samples that are no number
-  /// stay that, and a gap starts the motion anew.
+  /// Takes a sample; the surrogate's of the one before, where there is one. Samples that are no
+  /// number stay that, and a gap starts the motion anew.
   [[nodiscard]] std::optional<Sample> next(const Sample& sample);
 
  private:
