@@ -2,15 +2,12 @@
 #include "dampline/dampline.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <new>
 
-#include "dampline/damping/estimator.hpp"
-#include "dampline/guard/guard.hpp"
-#include "dampline/sample/assembler.hpp"
+#include "dampline/identifier.hpp"
 
 namespace {
 
@@ -38,41 +35,19 @@ ChannelConfig channel_of(const dampline_channel& c) noexcept {
           .counter = layout_of(c.counter)};
 }
 
-AssemblerConfig frames_config(const dampline_config& config) noexcept {
-  AssemblerConfig out{.sample_rate_hz = config.sample_rate_hz};
-  std::transform(std::begin(config.channels), std::end(config.channels), out.channels.begin(),
-                 [](const dampline_channel& each) { return ::channel_of(each); });
-  return out;
-}
-
-std::array<double, kChannels> steps_of(const dampline_config& config) noexcept {
-  std::array<double, kChannels> out{};
+IdentifierConfig config_of(const dampline_config& config) noexcept {
+  IdentifierConfig out;
+  out.estimator.sample_rate_hz = config.sample_rate_hz;
+  out.estimator.moving_mass_kg = config.moving_mass_kg;
+  out.estimator.anti_alias = {config.anti_alias_corner_hz, config.anti_alias_order};
+  out.guard.wheelbase_m = config.wheelbase_m;
+  out.guard.speed_mps = config.speed_mps;
   for (std::size_t c = 0; c < kChannels; ++c) {
-    const dampline_signal& accel = config.channels[c].accel;
-    if (accel.length > 0) out[c] = std::abs(accel.scale);
+    out.signals[c] = ::channel_of(config.channels[c]);
+    out.guard.noise_mps2[c] = config.channels[c].noise_mps2;
+    if (config.channels[c].accel.length > 0)
+      out.estimator.screen.step_mps2[c] = std::abs(config.channels[c].accel.scale);
   }
-  return out;
-}
-
-AntiAliasConfig anti_alias_of(const dampline_config& config) noexcept {
-  return {config.anti_alias_corner_hz, config.anti_alias_order};
-}
-
-EstimatorConfig estimator_config(const dampline_config& config) noexcept {
-  EstimatorConfig out{.sample_rate_hz = config.sample_rate_hz,
-                      .moving_mass_kg = config.moving_mass_kg,
-                      .anti_alias = anti_alias_of(config)};
-  out.screen.step_mps2 = steps_of(config);
-  return out;
-}
-
-GuardConfig guard_config(const dampline_config& config) noexcept {
-  GuardConfig out{.sample_rate_hz = config.sample_rate_hz,
-                  .step_mps2 = steps_of(config),
-                  .wheelbase_m = config.wheelbase_m,
-                  .speed_mps = config.speed_mps,
-                  .anti_alias = anti_alias_of(config)};
-  for (std::size_t c = 0; c < kChannels; ++c) out.noise_mps2[c] = config.channels[c].noise_mps2;
   return out;
 }
 
@@ -81,10 +56,12 @@ bool takes_frames(const dampline_config& config) noexcept {
                      [](const dampline_channel& each) { return each.accel.length > 0; });
 }
 
+using OfSamples =
+    BasicIdentifier<Parts{.frames = false, .densities = false, .phase = false, .alarms = false}>;
+
 bool is_valid(const dampline_config& config) noexcept {
-  return Estimator::check(estimator_config(config)).ok() &&
-         Guard::check(guard_config(config)).ok() &&
-         (!takes_frames(config) || SampleAssembler::check(frames_config(config)).ok());
+  return takes_frames(config) ? EmbeddedIdentifier::check(config_of(config)).ok()
+                              : OfSamples::check(config_of(config)).ok();
 }
 
 dampline_estimate plain(const Estimate& each) noexcept { return {each.value, each.std}; }
@@ -114,21 +91,8 @@ dampline_snapshot plain(const Snapshot& from) noexcept {
 /// What a program in C holds a pointer to.
 struct dampline_identifier {
   explicit dampline_identifier(const dampline_config& config) noexcept
-      : frames{frames_config(config)},
-        guard{guard_config(config)},
-        estimator{estimator_config(config)} {}
-
-  void take(const Sample& sample) noexcept {
-    guard.update(sample);
-    static_cast<void>(estimator.update(sample));
-  }
-  void take_ready() noexcept {
-    for (Sample sample; frames.pop(sample);) take(sample);
-  }
-
-  SampleAssembler frames;
-  Guard guard;
-  Estimator estimator;
+      : corridor{config_of(config)} {}
+  EmbeddedIdentifier corridor;
 };
 static_assert(alignof(dampline_identifier) <= alignof(long double));
 
@@ -159,34 +123,28 @@ void dampline_push_frame(dampline_identifier* self, const dampline_frame* frame)
                .length = std::min<std::uint8_t>(frame->length, sizeof frame->data),
                .extended = frame->extended};
   std::copy_n(frame->data, own.length, own.data.begin());
-  self->frames.push(own);
-  self->take_ready();
+  self->corridor.push(own);
 }
 
 void dampline_push_sample(dampline_identifier* self, const dampline_sample* sample) {
   Sample own{.tick = sample->tick, .time_ns = sample->time_ns, .saturated = sample->saturated};
   std::copy_n(sample->accel_mps2, kChannels, own.accel_mps2.begin());
-  self->take(own);
+  self->corridor.push(own);
 }
 
-void dampline_finish(dampline_identifier* self) {
-  self->frames.flush();
-  self->take_ready();
-  self->guard.finish();
-  self->estimator.finish();
-}
+void dampline_finish(dampline_identifier* self) { self->corridor.finish(); }
 
 void dampline_get_snapshot(dampline_identifier* self, dampline_snapshot* out) {
-  *out = plain(self->estimator.snapshot());
+  *out = plain(self->corridor.snapshot());
 }
 
 uint32_t dampline_fault_count(const dampline_identifier* self) {
-  return static_cast<std::uint32_t>(self->guard.faults().size());
+  return static_cast<std::uint32_t>(self->corridor.guard().faults().size());
 }
 
 bool dampline_get_fault(const dampline_identifier* self, uint32_t index, dampline_fault* out) {
-  if (index >= self->guard.faults().size()) return false;
-  const Fault& fault = self->guard.faults()[index];
+  if (index >= self->corridor.guard().faults().size()) return false;
+  const Fault& fault = self->corridor.guard().faults()[index];
   *out = {name_of(fault.kind), name_of(fault.channel), fault.unit,
           fault.size,          fault.time_s,           fault.last_s};
   return true;

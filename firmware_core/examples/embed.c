@@ -5,7 +5,7 @@
 
 #include "dampline/dampline.h"
 
-static long double memory[60000]; /* at least dampline_size() bytes */
+static long double memory[90000]; /* at least dampline_size() bytes */
 static const double range_mps2[DAMPLINE_CHANNELS] = {49.03325, 98.0665, 98.0665};
 
 int main(void) {
