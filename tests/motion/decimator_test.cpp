@@ -10,11 +10,11 @@
 namespace dampline {
 namespace {
 
-constexpr double kRateHz = 1000.0;
+constexpr double kRecordHz = 1000.0;
 constexpr int kFactor = 3;
 
 Sample tone(std::int64_t tick, double hz) {
-  const double time_s = static_cast<double>(tick) / kRateHz;
+  const double time_s = static_cast<double>(tick) / kRecordHz;
   const double a = std::cos(2.0 * M_PI * hz * time_s);
   return {tick, std::llround(1e9 * time_s), {a, 2.0 * a, 1.0}, 0};
 }
@@ -37,12 +37,12 @@ TEST(Decimator, TakesWholeFactorsAboveFourHundredHertz) {
   EXPECT_EQ(decimation(300.0), 1);
   EXPECT_EQ(decimation(400.0), 1);
   EXPECT_EQ(decimation(500.0), 2);
-  EXPECT_EQ(decimation(kRateHz), kFactor);
+  EXPECT_EQ(decimation(kRecordHz), kFactor);
   EXPECT_EQ(decimation(10240.0), 26);
 }
 
 TEST(Decimator, KeepsSlowTonesWithTheirPhaseAndTheMean) {
-  for (const double hz : {0.5, 20.0, 90.0, 0.38 * kRateHz / kFactor}) {
+  for (const double hz : {0.5, 20.0, 90.0, 0.38 * kRecordHz / kFactor}) {
     const auto out = decimated(tones(hz));
     ASSERT_GT(out.size(), 400U);
     for (const Sample& sample : out) {
@@ -55,7 +55,7 @@ TEST(Decimator, KeepsSlowTonesWithTheirPhaseAndTheMean) {
 }
 
 TEST(Decimator, LeavesNoAliases) {
-  for (const double hz : {0.5 * kRateHz / kFactor + 0.5, 240.0, 333.3, 490.0})
+  for (const double hz : {0.5 * kRecordHz / kFactor + 0.5, 240.0, 333.3, 490.0})
     for (const Sample& sample : decimated(tones(hz)))
       EXPECT_LT(std::abs(sample.accel_mps2[0]), 1.5e-3) << hz << " Hz";
 }
