@@ -6,10 +6,10 @@
 namespace dampline::proof {
 namespace {
 
-TEST(SourceTree, HasNoFileOfMoreThan300Lines) {
+TEST(SourceTree, HasNoFileOfMoreThan500Lines) {
   for (const SourceFile& file :
        read_sources({"firmware_core", "hal", "drivers", "sim_hw", "app", "tests", "bench"})) {
-    EXPECT_LE(count_lines(file.text), 300U) << file.path;
+    EXPECT_LE(count_lines(file.text), 500U) << file.path;
   }
 }
 

@@ -119,8 +119,10 @@ struct IdentifierRoom final : Room {
 inline constexpr Parts kChainParts{.guards = false, .phase = false, .alarms = false};
 template <Parts kParts>
 struct Chain final : Room {
-  BasicIdentifier<kParts> identifier{
-      {.estimator = identifier_config(), .signals = assembler_config().channels}};
+  // How long samples wait costs nothing a sample, and a short wait lets the ride be short.
+  BasicIdentifier<kParts> identifier{{.estimator = identifier_config(),
+                                      .signals = assembler_config().channels,
+                                      .judgement_delay_s = 1.0}};
   void take(const Instant& instant) override {
     for (const CanFrame& frame : instant.frames) identifier.push(frame);
   }
