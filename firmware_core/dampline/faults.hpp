@@ -91,7 +91,7 @@ struct RepairCounts {
 };
 
 /// The faults at one moment, times in seconds by the nominal rate. Plain: it can be handed between
-/// threads; some 5 KiB.
+/// threads; some 4 KiB.
 struct FaultView {
   std::array<Fault, kFaultKinds * kFaultChannels> faults{};
   std::size_t count{0};

@@ -31,7 +31,7 @@
 namespace dampline {
 
 /// What an Identifier has beside the estimate. A part that is not wanted takes neither memory nor
-/// time; README and docs/api.md tell what each takes.
+/// time; docs/api.md tells what each takes.
 struct Parts {
   bool frames{true};     ///< push(CanFrame): decoding, channels brought together by counter or time
   bool guards{true};     ///< faults of the data are named; samples wait until they are judged
