@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/phase_plot.hpp"
 #include "app/text/format.hpp"
