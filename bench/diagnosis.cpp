@@ -40,9 +40,9 @@ struct Condition {
   sim::Load load;
   double speed_kmh;
 };
-inline constexpr Condition kConditions[]{{"laden 80", sim::Load::kLaden, 80.0},
-                                         {"laden 60", sim::Load::kLaden, 60.0},
-                                         {"empty 80", sim::Load::kEmpty, 80.0}};
+inline constexpr std::array kConditions{Condition{"laden 80", sim::Load::kLaden, 80.0},
+                                        Condition{"laden 60", sim::Load::kLaden, 60.0},
+                                        Condition{"empty 80", sim::Load::kEmpty, 80.0}};
 
 /// An effect as it is planted: its name, what to simulate, and the parameter that tells its size,
 /// with the true value (no name: none is compared).
@@ -77,7 +77,7 @@ inline const std::vector<std::string>& planted_kinds() {
 /// Plants one kind at a strength, 1 being nominal; channels, signs and frequencies by chance.
 inline Planted plant(const std::string& kind, double strength, sim::Random& random) {
   const auto sign = [&] { return random.uniform() < 0.5 ? -1.0 : 1.0; };
-  const char* const channels[]{"frame", "wheelset1", "wheelset2"};
+  const std::array<const char*, 3> channels{"frame", "wheelset1", "wheelset2"};
   const char* const channel = channels[static_cast<std::size_t>(3.0 * random.uniform())];
   if (kind == "pitch") {
     return {"unmodelled_mode", fmt::format("unmodelled_mode:strength={}", strength), "", 0.0};

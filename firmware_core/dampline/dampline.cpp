@@ -114,7 +114,7 @@ dampline_identifier* dampline_create(void* memory, size_t size, const dampline_c
   if (memory == nullptr || size < sizeof(dampline_identifier) ||
       address % alignof(dampline_identifier) != 0 || !is_valid(*config))
     return nullptr;
-  return new (memory) dampline_identifier{*config};
+  return new (memory) dampline_identifier{*config};  // NOLINT(cppcoreguidelines-owning-memory)
 }
 
 void dampline_push_frame(dampline_identifier* self, const dampline_frame* frame) {

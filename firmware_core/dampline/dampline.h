@@ -12,6 +12,7 @@
  * thread at a time; several are independent of each other. Link with libdampline_core and libm. */
 #ifndef DAMPLINE_H
 #define DAMPLINE_H
+/* NOLINTBEGIN: the rules are those of C++. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -134,4 +135,5 @@ bool dampline_get_fault(const dampline_identifier* self, uint32_t index, damplin
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND */
 #endif

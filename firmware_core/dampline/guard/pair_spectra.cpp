@@ -123,31 +123,32 @@ bool PairSpectra::sum() noexcept {
 
 void PairSpectra::add_bin(std::size_t k) noexcept {
   SpectrumSums& sums = sums_[open_];
-  using Complex = std::complex<double>;
-  const auto split = [k](const Fourier512& of, Complex& first, Complex& second) {
-    const Complex a = of[k];
-    const Complex b = of[Fourier512::kSize - k];
+  const auto split = [k](const Fourier512& of, std::complex<double>& first,
+                         std::complex<double>& second) {
+    const std::complex<double> a = of[k];
+    const std::complex<double> b = of[Fourier512::kSize - k];
     first = {0.5 * (a.real() + b.real()), 0.5 * (a.imag() - b.imag())};
     second = {0.5 * (a.imag() + b.imag()), 0.5 * (b.real() - a.real())};
   };
-  const auto cross = [](const Complex& a, const Complex& b) {  // conj(a) b
-    return Complex{a.real() * b.real() + a.imag() * b.imag(),
-                   a.real() * b.imag() - a.imag() * b.real()};
+  const auto cross = [](const std::complex<double>& a,
+                        const std::complex<double>& b) {  // conj(a) b
+    return std::complex<double>{a.real() * b.real() + a.imag() * b.imag(),
+                                a.real() * b.imag() - a.imag() * b.real()};
   };
-  Complex one;
-  Complex two;
-  Complex frame;
-  Complex delayed;
+  std::complex<double> one;
+  std::complex<double> two;
+  std::complex<double> frame;
+  std::complex<double> delayed;
   split(wheelsets_, one, two);
   split(frame_, frame, delayed);
-  const Complex mean = 0.5 * (one + two);
+  const std::complex<double> mean = 0.5 * (one + two);
   sums.frame[k] += std::norm(frame);
   sums.wheelset1[k] += std::norm(one);
   sums.wheelset2[k] += std::norm(two);
   sums.delayed1[k] += std::norm(delayed);
   sums.mean[k] += std::norm(mean);
   sums.wheelsets[k] += cross(one, two);
-  const Complex aligned = cross(delayed, two);
+  const std::complex<double> aligned = cross(delayed, two);
   sums.aligned[k] += aligned;
   sums.frame_to[0][k] += cross(one, frame);
   sums.frame_to[1][k] += cross(two, frame);

@@ -26,7 +26,9 @@ template <int kMostFactor>
 class Decimator {
  public:
   /// Precondition: 1 <= factor <= kMostFactor.
-  explicit Decimator(int factor) : factor_{factor}, half_{kReach * factor} { design(); }
+  explicit Decimator(int factor) : factor_{factor}, half_{std::int64_t{kReach} * factor} {
+    design();
+  }
   /// Takes the record's next sample; true where `out` is the next of the lower rate.
   [[nodiscard]] bool take(const Sample& in, Sample& out) noexcept {
     if (factor_ == 1) {

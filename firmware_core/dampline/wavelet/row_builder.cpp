@@ -67,7 +67,7 @@ DAMPLINE_WIDE LawAverage::Lanes LawAverage::update(const LawColumns& law, double
   const double m1 = step_s * accel_mps2;
   const double v0 = last_velocity_mps_;
   const double v1 = velocity_mps;
-  std::array<std::array<float, kLanes>, 4> p;
+  std::array<std::array<float, kLanes>, 4> p;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   law.lanes_to(p[0].data(), v0);
   // Hermite weights at u = 1/4, 1/2, 3/4: (h00, h10, h01, h11) of u.
   law.lanes_to(p[1].data(), (54.0 * v0 + 9.0 * m0 + 10.0 * v1 - 3.0 * m1) / 64.0);
