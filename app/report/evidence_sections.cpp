@@ -8,6 +8,7 @@
 #include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
+#include "app/report/sections.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
