@@ -13,7 +13,7 @@ namespace dampline {
 /// One step down in level: s <- h/sqrt(2) * s, every second value kept. `Channels` signals go
 /// through the same filter side by side, so that an equation that held between them still holds.
 template <class Wavelet, std::size_t Channels>
-class Decimator {
+class CoarseDecimator {
  public:
   using Values = std::array<double, Channels>;
   static constexpr std::size_t kTaps = Wavelet::kLowPass.size();
@@ -159,7 +159,7 @@ class CoarseRows {
   SignGate<M::kGates, M::kGateSign> gate_{{}, 1.0};
   std::array<RecentValues<double, kReach + kDelay + 1>, kDof> deflection_{};
   std::array<RecentValues<double, kDelay + 1>, kDof> force_{};
-  std::array<Decimator<Wavelet, kChannels>, static_cast<std::size_t>(Level)> decimators_{};
+  std::array<CoarseDecimator<Wavelet, kChannels>, static_cast<std::size_t>(Level)> decimators_{};
   RecentValues<Values, kReach + 1> coarse_{};  // the newest to the centre of the stencil
   std::array<RecentValues<double, 2 * kReach + 1>, kDof> coarse_deflection_{};
   std::int64_t pushed_{0};
