@@ -15,7 +15,7 @@
 #include "drivers/blackbox/source.hpp"
 #include "drivers/blackbox/writer.hpp"
 
-namespace dampline::testing {
+namespace dampline::test {
 
 namespace fs = std::filesystem;
 
@@ -181,4 +181,4 @@ inline std::vector<std::uint64_t> range(std::uint64_t first, std::uint64_t count
   return numbers;
 }
 
-}  // namespace dampline::testing
+}  // namespace dampline::test

@@ -16,7 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string error_of(const std::string& toml) {
+std::string config_error(const std::string& toml) {
   try {
     static_cast<void>(parse_config(toml, "car.toml"));
   } catch (const UsageError& error) {
@@ -85,58 +85,59 @@ wait_s = 12
 }
 
 TEST(Config, NamesAnUnknownKeyItsLineAndTheNearestKnownOne) {
-  EXPECT_THAT(error_of("[car]\n\nmoving_mass = 1.0\n"),
+  EXPECT_THAT(config_error("[car]\n\nmoving_mass = 1.0\n"),
               AllOf(HasSubstr("car.toml:3:"), HasSubstr("\"moving_mass\""), HasSubstr("[car]"),
                     HasSubstr("moving_mass_kg")));
 }
 
 TEST(Config, SaysIntoWhichTableAMisplacedKeyBelongs) {
-  EXPECT_THAT(error_of("[car]\nsample_rate_hz = 300.0\n"),
+  EXPECT_THAT(config_error("[car]\nsample_rate_hz = 300.0\n"),
               AllOf(HasSubstr("car.toml:2:"), HasSubstr("belongs into [input]")));
 }
 
 TEST(Config, RefusesAnUnknownTable) {
-  EXPECT_THAT(error_of("[inptu]\n"),
+  EXPECT_THAT(config_error("[inptu]\n"),
               AllOf(HasSubstr("car.toml:1:"), HasSubstr("nearest known one is input")));
-  EXPECT_THAT(error_of("[input.cann]\n"), HasSubstr("nearest known one is can"));
+  EXPECT_THAT(config_error("[input.cann]\n"), HasSubstr("nearest known one is can"));
 }
 
 TEST(Config, RefusesAValueOfAWrongType) {
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg = \"heavy\"\n"),
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg = \"heavy\"\n"),
               AllOf(HasSubstr("car.toml:2: [car] moving_mass_kg"), HasSubstr("\"heavy\""),
                     HasSubstr("a number")));
-  EXPECT_THAT(error_of("[input.can]\ndbc = 3\n"), AllOf(HasSubstr("found 3"), HasSubstr("a text")));
-  EXPECT_THAT(error_of("[model]\nbase = \"coulomb\"\n"), HasSubstr("an array"));
-  EXPECT_THAT(error_of("[input.anti_alias]\norder = 2.5\n"), HasSubstr("a whole number"));
-  EXPECT_THAT(error_of("car = 1\n"), HasSubstr("car.toml:1:"));
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg = true\n"), HasSubstr("found true"));
+  EXPECT_THAT(config_error("[input.can]\ndbc = 3\n"),
+              AllOf(HasSubstr("found 3"), HasSubstr("a text")));
+  EXPECT_THAT(config_error("[model]\nbase = \"coulomb\"\n"), HasSubstr("an array"));
+  EXPECT_THAT(config_error("[input.anti_alias]\norder = 2.5\n"), HasSubstr("a whole number"));
+  EXPECT_THAT(config_error("car = 1\n"), HasSubstr("car.toml:1:"));
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg = true\n"), HasSubstr("found true"));
 }
 
 TEST(Config, RefusesAValueOutOfItsRange) {
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg = -1.0\n"),
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg = -1.0\n"),
               AllOf(HasSubstr("-1"), HasSubstr("from 1")));
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg = nan\n"), HasSubstr("found nan"));
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg = inf\n"), HasSubstr("found inf"));
-  EXPECT_THAT(error_of("[model]\nvelocity_corner_hz = 0.8\n"), HasSubstr("one of 0.7, 1"));
-  EXPECT_THAT(error_of("[model]\nvelocity_corner_hz = \"often\"\n"), HasSubstr("\"auto\""));
-  EXPECT_THAT(error_of("[estimate]\nmemory = \"short\"\n"), HasSubstr("\"forgetting\""));
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg = nan\n"), HasSubstr("found nan"));
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg = inf\n"), HasSubstr("found inf"));
+  EXPECT_THAT(config_error("[model]\nvelocity_corner_hz = 0.8\n"), HasSubstr("one of 0.7, 1"));
+  EXPECT_THAT(config_error("[model]\nvelocity_corner_hz = \"often\"\n"), HasSubstr("\"auto\""));
+  EXPECT_THAT(config_error("[estimate]\nmemory = \"short\"\n"), HasSubstr("\"forgetting\""));
 }
 
 TEST(Config, NamesTheNearestEffect) {
-  EXPECT_THAT(error_of("[model]\nbase = [\"columb\"]\n"),
+  EXPECT_THAT(config_error("[model]\nbase = [\"columb\"]\n"),
               AllOf(HasSubstr("\"columb\""), HasSubstr("\"coulomb\"")));
 }
 
 TEST(Config, WantsEightAscendingNodes) {
-  EXPECT_THAT(error_of("[model]\ncurve_nodes_mps = [0.001, 0.002]\n"), HasSubstr("expected 8"));
+  EXPECT_THAT(config_error("[model]\ncurve_nodes_mps = [0.001, 0.002]\n"), HasSubstr("expected 8"));
   EXPECT_THAT(
-      error_of("[model]\ncurve_nodes_mps = [0.001, 0.002, 0.002, 0.004, 0.005, 0.006, 0.007, "
-               "0.008]\n"),
+      config_error("[model]\ncurve_nodes_mps = [0.001, 0.002, 0.002, 0.004, 0.005, 0.006, 0.007, "
+                   "0.008]\n"),
       HasSubstr("ascending"));
 }
 
 TEST(Config, ReportsTheLineOfASyntaxError) {
-  EXPECT_THAT(error_of("[car]\nmoving_mass_kg 1.0\n"),
+  EXPECT_THAT(config_error("[car]\nmoving_mass_kg 1.0\n"),
               AllOf(HasSubstr("car.toml:2:"), HasSubstr("not TOML")));
 }
 

@@ -9,12 +9,12 @@
 namespace dampline::app {
 namespace {
 
+using test::numbered_frame;
 using ::testing::HasSubstr;
-using testing::numbered_frame;
 
 /// A black box "box" of 50 frames, and an event after the 20th.
 void record(const Program& program) {
-  const auto writer = testing::open_box(testing::box_config(program.path("box")));
+  const auto writer = test::open_box(test::box_config(program.path("box")));
   for (std::uint64_t i = 0; i < 50; ++i) {
     writer->write(numbered_frame(i));
     if (i == 19)

@@ -17,7 +17,7 @@ std::string rows(double rate_hz) {
 }
 
 TEST(RecordRate, IsTheFilesOwnWhereNoneWasSet) {
-  const dampline::testing::TemporaryFile file{rows(512.0), ".csv"};
+  const dampline::test::TemporaryFile file{rows(512.0), ".csv"};
   const SourceOptions source{file.path(), false};
   const Config found = with_record_rate({}, source, SourceKind::kTruckCsv);
   EXPECT_NEAR(found.input.sample_rate_hz, 512.0, 0.1);

@@ -151,12 +151,12 @@ class SimulatedSwapping {
 class BlackboxFolder {
  public:
   BlackboxFolder() {
-    auto config = testing::box_config(folder_.path());
+    auto config = test::box_config(folder_.path());
     config.rotate_bytes = 4096;
-    const auto writer = testing::open_box(config);
+    const auto writer = test::open_box(config);
     for (std::size_t i = 0; i < kFrames; ++i) {
-      writer->write(testing::numbered_frame(i));
-      if (i % 40 == 0) writer->write(hal::Event{testing::kStartNs, hal::EventKind::kPulse, 0, 0});
+      writer->write(test::numbered_frame(i));
+      if (i % 40 == 0) writer->write(hal::Event{test::kStartNs, hal::EventKind::kPulse, 0, 0});
     }
     writer->close();
     source_ = std::move(drivers::BlackboxSource::open({folder_.path(), {}}).value());
@@ -164,7 +164,7 @@ class BlackboxFolder {
   hal::FrameSource& source() { return *source_; }
 
  private:
-  testing::BoxFolder folder_;
+  test::BoxFolder folder_;
   std::unique_ptr<drivers::BlackboxSource> source_;
 };
 
@@ -172,16 +172,16 @@ class BlackboxFolder {
 class DamagedBlackbox {
  public:
   DamagedBlackbox() {
-    testing::write_box(testing::box_config(folder_.path()), 0, kFrames + 1);
-    std::string bytes = testing::bytes_of(folder_.file(1));
+    test::write_box(test::box_config(folder_.path()), 0, kFrames + 1);
+    std::string bytes = test::bytes_of(folder_.file(1));
     bytes[bytes.size() / 2] = static_cast<char>(~bytes[bytes.size() / 2]);
-    testing::write_bytes(folder_.file(1), bytes);
+    test::write_bytes(folder_.file(1), bytes);
     source_ = std::move(drivers::BlackboxSource::open({folder_.path(), {}}).value());
   }
   hal::FrameSource& source() { return *source_; }
 
  private:
-  testing::BoxFolder folder_;
+  test::BoxFolder folder_;
   std::unique_ptr<drivers::BlackboxSource> source_;
 };
 

@@ -11,11 +11,11 @@
 namespace dampline::drivers {
 namespace {
 
-using testing::BoxContent;
-using testing::BoxFolder;
-using testing::bytes_of;
-using testing::read_box;
-using testing::write_bytes;
+using test::BoxContent;
+using test::BoxFolder;
+using test::bytes_of;
+using test::read_box;
+using test::write_bytes;
 
 constexpr std::uint64_t kRecords = 20;
 
@@ -23,7 +23,7 @@ constexpr std::uint64_t kRecords = 20;
 class SmallBox {
  public:
   SmallBox() {
-    testing::write_box(testing::box_config(folder_.path()), 0, kRecords);
+    test::write_box(test::box_config(folder_.path()), 0, kRecords);
     bytes_ = bytes_of(folder_.file(1));
     for (std::size_t at = kRecordsAt; at < bytes_.size();) {
       begins_.push_back(at);
@@ -56,7 +56,7 @@ TEST(BlackboxDamage, NoneIsSeenInAWholeOne) {
   const SmallBox box;
   ASSERT_EQ(box.begins().size(), kRecords + 1);
   const BoxContent content = box.with(box.bytes());
-  EXPECT_EQ(content.numbers(), testing::range(0, kRecords));
+  EXPECT_EQ(content.numbers(), test::range(0, kRecords));
   EXPECT_TRUE(content.all_true());
   EXPECT_EQ(content.end, Errc::kEndOfStream);
   EXPECT_EQ(content.health.malformed + content.health.dropped, 0U);
@@ -163,12 +163,12 @@ TEST(BlackboxDamage, TheNextStartGoesOnBehindATornEndInANewFile) {
   for (std::size_t size = 0; size <= box.bytes().size(); size += 7) {
     const std::string torn = box.bytes().substr(0, size);
     write_bytes(box.folder().file(1), torn);
-    testing::write_box(testing::box_config(box.folder().path()), 1000, 3);
+    test::write_box(test::box_config(box.folder().path()), 1000, 3);
     ASSERT_EQ(bytes_of(box.folder().file(1)), torn);  // left as it is
     const BoxContent content = read_box(box.folder().path());
     auto expected = box.beside(size, box.bytes().size());
     if (size < kHeaderBytes) expected.clear();
-    for (const std::uint64_t number : testing::range(1000, 3)) expected.push_back(number);
+    for (const std::uint64_t number : test::range(1000, 3)) expected.push_back(number);
     ASSERT_EQ(content.numbers(), expected) << size;
     ASSERT_EQ(content.health.dropped, 0U) << size;  // whoever was killed could not count
     ASSERT_FALSE(content.health.truncated) << size;
@@ -178,18 +178,18 @@ TEST(BlackboxDamage, TheNextStartGoesOnBehindATornEndInANewFile) {
 
 TEST(BlackboxDamage, AFileWithoutAHeaderLosesOnlyItself) {
   BoxFolder folder;
-  auto config = testing::box_config(folder.path());
-  const auto writer = testing::open_box(config);
+  auto config = test::box_config(folder.path());
+  const auto writer = test::open_box(config);
   for (std::uint64_t i = 0; i < 30; ++i) {
-    writer->write(testing::numbered_frame(i));
+    writer->write(test::numbered_frame(i));
     if (i % 10 == 9) writer->close();
   }
   std::string bytes = bytes_of(folder.file(2));
   std::fill_n(bytes.begin(), kRecordsAt, '\0');
   write_bytes(folder.file(2), bytes);
   const BoxContent content = read_box(folder.path());
-  auto expected = testing::range(0, 10);
-  for (const std::uint64_t number : testing::range(20, 10)) expected.push_back(number);
+  auto expected = test::range(0, 10);
+  for (const std::uint64_t number : test::range(20, 10)) expected.push_back(number);
   EXPECT_EQ(content.numbers(), expected);
   EXPECT_EQ(content.health.dropped, 10U);
   EXPECT_EQ(content.health.malformed, 1U);
@@ -203,7 +203,7 @@ TEST(BlackboxDamage, ACopyOfAnEarlierBlockIsNoRecord) {
   std::string bytes = box.bytes();
   bytes.insert(box.begins()[10], block);
   const BoxContent content = box.with(bytes);
-  EXPECT_EQ(content.numbers(), testing::range(0, kRecords));
+  EXPECT_EQ(content.numbers(), test::range(0, kRecords));
   EXPECT_EQ(content.health.malformed, 1U);
 }
 

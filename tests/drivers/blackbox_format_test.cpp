@@ -58,20 +58,19 @@ TEST(BlackboxFormat, IsTheDocumentedOne) {
 
 TEST(BlackboxFormat, KeepsEveryFieldOfAFrame) {
   for (std::uint64_t i = 0; i < 200; ++i)
-    ASSERT_TRUE(testing::same(read_back(testing::numbered_frame(i)), testing::numbered_frame(i)))
-        << i;
-  CanFrame remote = testing::numbered_frame(0);
+    ASSERT_TRUE(test::same(read_back(test::numbered_frame(i)), test::numbered_frame(i))) << i;
+  CanFrame remote = test::numbered_frame(0);
   remote.remote = true;
   remote.data = {};
-  EXPECT_TRUE(testing::same(read_back(remote), remote));
-  CanFrame error = testing::numbered_frame(0);
+  EXPECT_TRUE(test::same(read_back(remote), remote));
+  CanFrame error = test::numbered_frame(0);
   error.error = true;
   error.id = 0x1FFFFFFF;
-  EXPECT_TRUE(testing::same(read_back(error), error));
-  CanFrame longest = testing::numbered_frame(4);
+  EXPECT_TRUE(test::same(read_back(error), error));
+  CanFrame longest = test::numbered_frame(4);
   longest.length = 64;
   longest.data.fill(0xDB);
-  EXPECT_TRUE(testing::same(read_back(longest), longest));
+  EXPECT_TRUE(test::same(read_back(longest), longest));
   EXPECT_LE(encoded(longest).size(), kLongestRecord);
 }
 
@@ -99,7 +98,7 @@ TEST(BlackboxFormat, TakesNoRecordOfAnotherFile) {
   ++other_number.file_number;
   BlackboxHeader other_run = header;
   other_run.run_id ^= 1U;
-  const Bytes bytes = encoded(testing::numbered_frame(1), 1, header.checksum_seed());
+  const Bytes bytes = encoded(test::numbered_frame(1), 1, header.checksum_seed());
   BlackboxRecord record;
   EXPECT_TRUE(decode_record(bytes, header.checksum_seed(), record));
   EXPECT_FALSE(decode_record(bytes, other_number.checksum_seed(), record));
@@ -107,14 +106,14 @@ TEST(BlackboxFormat, TakesNoRecordOfAnotherFile) {
 }
 
 TEST(BlackboxFormat, TakesNoPartOfARecord) {
-  const Bytes bytes = encoded(testing::numbered_frame(1));
+  const Bytes bytes = encoded(test::numbered_frame(1));
   BlackboxRecord record;
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_FALSE(decode_record(std::span{bytes}.first(length), 0, record)) << length;
 }
 
 TEST(BlackboxFormat, RefusesARecordThatIsWholeButNoFrame) {
-  CanFrame classic = testing::numbered_frame(0);
+  CanFrame classic = test::numbered_frame(0);
   classic.fd = true;
   classic.length = 12;
   Bytes bytes = encoded(classic);

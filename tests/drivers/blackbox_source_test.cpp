@@ -9,12 +9,12 @@ namespace dampline::drivers {
 namespace {
 
 using hal::EventKind;
-using testing::BoxFolder;
+using test::BoxFolder;
+using test::kSecondNs;
+using test::numbered_frame;
+using test::open_box;
+using test::read_box;
 using ::testing::HasSubstr;
-using testing::kSecondNs;
-using testing::numbered_frame;
-using testing::open_box;
-using testing::read_box;
 
 TEST(BlackboxSource, SaysWhatItFoundInsteadOfABlackBox) {
   const BoxFolder folder;
@@ -25,31 +25,31 @@ TEST(BlackboxSource, SaysWhatItFoundInsteadOfABlackBox) {
               HasSubstr("holds no black box file, expected names such as blackbox-000001.dbb"));
   EXPECT_THAT(read_box("/dev/null").error, HasSubstr("neither a directory nor a file"));
   const auto text = folder.path() / "text.log";
-  testing::write_bytes(text, std::string(2000, 'x'));
+  test::write_bytes(text, std::string(2000, 'x'));
   EXPECT_FALSE(is_blackbox(text));
   EXPECT_THAT(read_box(text).error, HasSubstr("text.log: has no header of a black box file"));
-  testing::write_bytes(folder.file(1), "");
+  test::write_bytes(folder.file(1), "");
   EXPECT_TRUE(is_blackbox(folder.path()));
   EXPECT_THAT(read_box(folder.path()).error, HasSubstr("is cut off in its header"));
 }
 
 TEST(BlackboxSource, KnowsABlackBoxByItsContent) {
   const BoxFolder folder;
-  testing::write_box(testing::box_config(folder.path()), 0, 3);
+  test::write_box(test::box_config(folder.path()), 0, 3);
   EXPECT_TRUE(is_blackbox(folder.path()));
   EXPECT_TRUE(is_blackbox(folder.file(1)));
   const auto renamed = folder.path() / "yesterday";
   std::filesystem::rename(folder.file(1), renamed);
   EXPECT_TRUE(is_blackbox(renamed));
-  EXPECT_EQ(read_box(renamed).numbers(), testing::range(0, 3));
+  EXPECT_EQ(read_box(renamed).numbers(), test::range(0, 3));
 }
 
 TEST(BlackboxSource, NamesTheInterfacesOfEveryFileByTheirNames) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
-  testing::write_box(config, 0, 10);
+  auto config = test::box_config(folder.path());
+  test::write_box(config, 0, 10);
   config.interfaces = {"vcan10", "can0"};  // the other way round
-  testing::write_box(config, 10, 10);
+  test::write_box(config, 10, 10);
   auto source = BlackboxSource::open({folder.path(), {}});
   ASSERT_EQ(source.value()->interfaces().size(), 2U);
   std::vector<CanFrame> frames(100);
@@ -68,7 +68,7 @@ TEST(BlackboxSource, NamesTheInterfacesOfEveryFileByTheirNames) {
 
 TEST(BlackboxSource, GivesOnlyTheInterfacesThatWereAskedFor) {
   const BoxFolder folder;
-  testing::write_box(testing::box_config(folder.path()), 0, 70);
+  test::write_box(test::box_config(folder.path()), 0, 70);
   auto source = BlackboxSource::open({folder.path(), {"vcan10"}});
   std::vector<CanFrame> frames(100);
   EXPECT_EQ(source.value()->read(frames).value(), 10U);
@@ -77,9 +77,9 @@ TEST(BlackboxSource, GivesOnlyTheInterfacesThatWereAskedFor) {
 
 TEST(BlackboxSource, RestoresWhatTheLiveRunCounted) {
   const BoxFolder folder;
-  const auto writer = open_box(testing::box_config(folder.path()));
+  const auto writer = open_box(test::box_config(folder.path()));
   const auto tell = [&](EventKind kind, std::int64_t value) {
-    writer->write(hal::Event{testing::kStartNs, kind, 0, value});
+    writer->write(hal::Event{test::kStartNs, kind, 0, value});
   };
   tell(EventKind::kRunStart, 0);
   tell(EventKind::kLinkDown, 0);
@@ -111,9 +111,9 @@ TEST(BlackboxSource, RestoresWhatTheLiveRunCounted) {
 
 TEST(BlackboxSource, MovesARunThatBeganBeforeTheOneBeforeHadEnded) {
   const BoxFolder folder;
-  const auto config = testing::box_config(folder.path());
-  testing::write_box(config, 100, 50);
-  testing::write_box(config, 0, 50);
+  const auto config = test::box_config(folder.path());
+  test::write_box(config, 100, 50);
+  test::write_box(config, 0, 50);
   const auto content = read_box(folder.path());
   ASSERT_EQ(content.frames.size(), 100U);
   EXPECT_EQ(content.findings.runs_moved, 1U);
@@ -127,7 +127,7 @@ TEST(BlackboxSource, MovesARunThatBeganBeforeTheOneBeforeHadEnded) {
 TEST(BlackboxSource, HoldsATimeThatGoesBackWithinARun) {
   const BoxFolder folder;
   {
-    const auto writer = open_box(testing::box_config(folder.path()));
+    const auto writer = open_box(test::box_config(folder.path()));
     for (const std::uint64_t number : {5U, 4U, 6U}) writer->write(numbered_frame(number));
   }
   const auto content = read_box(folder.path());
@@ -139,15 +139,15 @@ TEST(BlackboxSource, HoldsATimeThatGoesBackWithinARun) {
 TEST(BlackboxSource, ReadsTheSameInBatchesOfAnySize) {
   const BoxFolder folder;
   {
-    const auto writer = open_box(testing::box_config(folder.path()));
+    const auto writer = open_box(test::box_config(folder.path()));
     for (std::uint64_t i = 0; i < 20000; ++i) {
       writer->write(numbered_frame(i));
-      if (i % 97 < 2) writer->write(hal::Event{testing::kStartNs, EventKind::kPulse, 0, 1});
+      if (i % 97 < 2) writer->write(hal::Event{test::kStartNs, EventKind::kPulse, 0, 1});
     }
   }
   for (const std::size_t some : {1U, 7U, 64U, 30000U}) {
     const auto content = read_box(folder.path(), some);
-    EXPECT_EQ(content.numbers(), testing::range(0, 20000)) << some;
+    EXPECT_EQ(content.numbers(), test::range(0, 20000)) << some;
     EXPECT_TRUE(content.all_true());
     EXPECT_EQ(content.events.size(), 414U);
   }
@@ -155,9 +155,9 @@ TEST(BlackboxSource, ReadsTheSameInBatchesOfAnySize) {
 
 TEST(BlackboxSource, GoesOnWhereAFileIsGoneAndCountsWhatWasInIt) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 8192;
-  testing::write_box(config, 0, 500);
+  test::write_box(config, 0, 500);
   const auto second = read_box(folder.file(2));
   auto source = BlackboxSource::open({folder.path(), {}});
   std::filesystem::remove(folder.file(2));

@@ -9,16 +9,16 @@ namespace dampline::drivers {
 namespace {
 
 using hal::EventKind;
-using testing::BoxFolder;
+using test::BoxFolder;
+using test::kSecondNs;
+using test::numbered_frame;
+using test::open_box;
+using test::read_box;
 using ::testing::HasSubstr;
-using testing::kSecondNs;
-using testing::numbered_frame;
-using testing::open_box;
-using testing::read_box;
 
 TEST(BlackboxWriter, KeepsFramesAndEventsInTheirOrder) {
   const BoxFolder folder;
-  const auto writer = open_box(testing::box_config(folder.path()));
+  const auto writer = open_box(test::box_config(folder.path()));
   for (std::uint64_t i = 0; i < 10; ++i) {
     writer->write(numbered_frame(i));
     writer->write(hal::Event{numbered_frame(i).time_ns + 1, EventKind::kPulse, 3,
@@ -34,7 +34,7 @@ TEST(BlackboxWriter, KeepsFramesAndEventsInTheirOrder) {
   std::vector<CanFrame> frames(100);
   for (std::uint64_t i = 0; i < 10; ++i) {
     ASSERT_EQ(source.value()->read(frames).value(), 1U);
-    EXPECT_TRUE(testing::same(frames[0], numbered_frame(i)));
+    EXPECT_TRUE(test::same(frames[0], numbered_frame(i)));
     hal::Event event;
     ASSERT_TRUE(source.value()->next_event(event));
     EXPECT_EQ(event.kind, EventKind::kPulse);
@@ -47,7 +47,7 @@ TEST(BlackboxWriter, KeepsFramesAndEventsInTheirOrder) {
 TEST(BlackboxWriter, MakesNoFileBeforeItsFirstRecord) {
   const BoxFolder folder;
   {
-    const auto writer = open_box(testing::box_config(folder.path()));
+    const auto writer = open_box(test::box_config(folder.path()));
     writer->tick(1);
     writer->rotate();
     writer->tick(2 * 3600 * kSecondNs);
@@ -59,7 +59,7 @@ TEST(BlackboxWriter, MakesNoFileBeforeItsFirstRecord) {
 
 TEST(BlackboxWriter, IsOnTheDiskWithinTheSyncInterval) {
   const BoxFolder folder;
-  const auto writer = open_box(testing::box_config(folder.path()));
+  const auto writer = open_box(test::box_config(folder.path()));
   writer->tick(0);
   writer->write(numbered_frame(0));
   const std::uint64_t begun = writer->health().syncs;
@@ -75,14 +75,14 @@ TEST(BlackboxWriter, IsOnTheDiskWithinTheSyncInterval) {
 
 TEST(BlackboxWriter, RotatesBySize) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 8192;
-  testing::write_box(config, 0, 1000);
+  test::write_box(config, 0, 1000);
   EXPECT_GT(folder.files(), 4U);
   for (std::uint32_t i = 1; i <= folder.files(); ++i)
     EXPECT_LE(std::filesystem::file_size(folder.file(i)), 8192U);
   const auto content = read_box(folder.path());
-  EXPECT_EQ(content.numbers(), testing::range(0, 1000));
+  EXPECT_EQ(content.numbers(), test::range(0, 1000));
   EXPECT_EQ(content.health.dropped, 0U);
   const auto rotated = content.of(EventKind::kFileRotated);
   ASSERT_EQ(rotated.size(), folder.files() - 1);
@@ -97,7 +97,7 @@ TEST(BlackboxWriter, RotatesBySize) {
 
 TEST(BlackboxWriter, RotatesByTimeAndWhenAsked) {
   const BoxFolder folder;
-  const auto writer = open_box(testing::box_config(folder.path()));
+  const auto writer = open_box(test::box_config(folder.path()));
   std::int64_t now_ns = 1'000'000 * kSecondNs;
   writer->tick(now_ns);
   writer->write(numbered_frame(0));
@@ -114,18 +114,18 @@ TEST(BlackboxWriter, RotatesByTimeAndWhenAsked) {
   EXPECT_EQ(folder.files(), 3U);
   writer->close();
   const auto content = read_box(folder.path());
-  EXPECT_EQ(content.numbers(), testing::range(0, 3));
+  EXPECT_EQ(content.numbers(), test::range(0, 3));
   EXPECT_EQ(content.of(EventKind::kFileRotated).size(), 2U);
 }
 
 TEST(BlackboxWriter, RemovesTheOldestFilesAndNothingElse) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 8192;
   config.keep_bytes = 40000;
   std::filesystem::create_directories(folder.path());
   for (const char* name : {"blackbox-1.dbb", "notes.txt", "blackbox-000000.dbb.bak"})
-    testing::write_bytes(folder.path() / name, std::string(100'000, 'x'));
+    test::write_bytes(folder.path() / name, std::string(100'000, 'x'));
   const auto writer = open_box(config);
   for (std::uint64_t i = 0; i < 5000; ++i) {
     writer->write(numbered_frame(i));
@@ -139,7 +139,7 @@ TEST(BlackboxWriter, RemovesTheOldestFilesAndNothingElse) {
   EXPECT_GT(writer->health().files_removed, 10U);
   const auto content = read_box(folder.path());
   ASSERT_FALSE(content.frames.empty());
-  EXPECT_EQ(content.numbers(), testing::range(5000 - content.frames.size(), content.frames.size()));
+  EXPECT_EQ(content.numbers(), test::range(5000 - content.frames.size(), content.frames.size()));
   EXPECT_EQ(content.health.dropped, 0U);  // what was given up on purpose is not lost
   for (const char* name : {"blackbox-1.dbb", "notes.txt", "blackbox-000000.dbb.bak"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
@@ -147,7 +147,7 @@ TEST(BlackboxWriter, RemovesTheOldestFilesAndNothingElse) {
 
 TEST(BlackboxWriter, NeverRemovesTheCurrentFile) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 100'000;
   config.keep_bytes = 1;
   const auto writer = open_box(config);
@@ -161,67 +161,67 @@ TEST(BlackboxWriter, NeverRemovesTheCurrentFile) {
 
 TEST(BlackboxWriter, RemovesFilesByTheirAge) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.keep_ns = 3600 * kSecondNs;
   const auto writer = open_box(config);
   for (int hour = 0; hour < 10; ++hour) {
     CanFrame frame = numbered_frame(static_cast<std::uint64_t>(hour));
-    frame.time_ns = testing::kStartNs + hour * 3600 * kSecondNs;
+    frame.time_ns = test::kStartNs + hour * 3600 * kSecondNs;
     writer->write(frame);
     writer->rotate();
   }
   EXPECT_EQ(folder.files(), 3U);  // the newest two hours, and the file that reaches into them
-  EXPECT_EQ(read_box(folder.path()).numbers(), testing::range(7, 3));
+  EXPECT_EQ(read_box(folder.path()).numbers(), test::range(7, 3));
 }
 
 TEST(BlackboxWriter, GoesOnInANewFileWithTheNextNumbers) {
   const BoxFolder folder;
   std::uint64_t sequence = 0;
   for (std::uint64_t run = 0; run < 4; ++run) {
-    const auto writer = open_box(testing::box_config(folder.path()));
+    const auto writer = open_box(test::box_config(folder.path()));
     EXPECT_EQ(writer->next_sequence(), sequence);
     for (std::uint64_t i = 0; i < 10; ++i) writer->write(numbered_frame(10 * run + i));
     sequence = writer->next_sequence();
   }
   EXPECT_EQ(folder.files(), 4U);
   const auto content = read_box(folder.path());
-  EXPECT_EQ(content.numbers(), testing::range(0, 40));
+  EXPECT_EQ(content.numbers(), test::range(0, 40));
   EXPECT_EQ(content.health.dropped, 0U);
   EXPECT_TRUE(content.of(EventKind::kFileRotated).empty());
 }
 
 TEST(BlackboxWriter, FindsTheLastNumberOfALongFileByItsTail) {
   const BoxFolder folder;
-  testing::write_box(testing::box_config(folder.path()), 0, 100'000);
+  test::write_box(test::box_config(folder.path()), 0, 100'000);
   ASSERT_GT(std::filesystem::file_size(folder.file(1)), 3U << 20U);
-  EXPECT_EQ(open_box(testing::box_config(folder.path()))->next_sequence(), 100'000U);
+  EXPECT_EQ(open_box(test::box_config(folder.path()))->next_sequence(), 100'000U);
 }
 
 TEST(BlackboxWriter, GoesOnAfterItsEnd) {
   const BoxFolder folder;
-  const auto writer = open_box(testing::box_config(folder.path()));
+  const auto writer = open_box(test::box_config(folder.path()));
   writer->write(numbered_frame(0));
   writer->close();
   writer->write(numbered_frame(1));
   writer->close();
-  EXPECT_EQ(read_box(folder.path()).numbers(), testing::range(0, 2));
+  EXPECT_EQ(read_box(folder.path()).numbers(), test::range(0, 2));
 }
 
 TEST(BlackboxWriter, IsTheOnlyOneInItsDirectory) {
   const BoxFolder folder;
-  auto first = open_box(testing::box_config(folder.path()));
-  const auto second = BlackboxWriter::open(testing::box_config(folder.path()));
+  auto first = open_box(test::box_config(folder.path()));
+  const auto second = BlackboxWriter::open(test::box_config(folder.path()));
   ASSERT_FALSE(second.ok());
   EXPECT_THAT(second.error_text(), HasSubstr(folder.path().string()));
   EXPECT_THAT(second.error_text(),
               HasSubstr("is being written to by process " + std::to_string(::getpid())));
   first.reset();
-  EXPECT_TRUE(BlackboxWriter::open(testing::box_config(folder.path())).ok());
+  EXPECT_TRUE(BlackboxWriter::open(test::box_config(folder.path())).ok());
 }
 
 TEST(BlackboxWriter, SaysWhatIsWrongWithItsConfiguration) {
   const BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.interfaces.clear();
   EXPECT_THAT(BlackboxWriter::open(config).error_text(), HasSubstr("found 0 interfaces"));
   config.interfaces = {"sixteen_letters_"};
@@ -229,22 +229,22 @@ TEST(BlackboxWriter, SaysWhatIsWrongWithItsConfiguration) {
   config.interfaces = {"can0"};
   config.rotate_bytes = 100;
   EXPECT_THAT(BlackboxWriter::open(config).error_text(), HasSubstr("4096 bytes at least"));
-  const testing::BoxFolder file;
-  testing::write_bytes(file.path(), "x");
-  EXPECT_THAT(BlackboxWriter::open(testing::box_config(file.path())).error_text(),
+  const test::BoxFolder file;
+  test::write_bytes(file.path(), "x");
+  EXPECT_THAT(BlackboxWriter::open(test::box_config(file.path())).error_text(),
               HasSubstr(file.path().string() + ": cannot be made"));
-  EXPECT_FALSE(BlackboxWriter::open(testing::box_config(file.path() / "inside")).ok());
+  EXPECT_FALSE(BlackboxWriter::open(test::box_config(file.path() / "inside")).ok());
 }
 
 TEST(BlackboxWriter, LeavesADirectoryOfAnotherVersionAlone) {
   const BoxFolder folder;
-  testing::write_box(testing::box_config(folder.path()), 0, 3);
+  test::write_box(test::box_config(folder.path()), 0, 3);
   BlackboxHeader header;
   header.version = 2;
   std::array<std::uint8_t, kRecordsAt> bytes{};
   encode_header(header, bytes);
-  testing::write_bytes(folder.file(2), {bytes.begin(), bytes.end()});
-  EXPECT_THAT(BlackboxWriter::open(testing::box_config(folder.path())).error_text(),
+  test::write_bytes(folder.file(2), {bytes.begin(), bytes.end()});
+  EXPECT_THAT(BlackboxWriter::open(test::box_config(folder.path())).error_text(),
               HasSubstr("is of format version 2, this program writes 1"));
   EXPECT_THAT(read_box(folder.path()).error, HasSubstr("is of format version 2, expected 1"));
 }

@@ -11,8 +11,8 @@
 
 namespace dampline::drivers {
 namespace {
+using test::TemporaryFile;
 using ::testing::HasSubstr;
-using testing::TemporaryFile;
 
 struct Outcomes {
   std::vector<CanFrame> frames;
@@ -225,7 +225,7 @@ TEST_P(CorruptedLog, LeavesEveryLineAccountedFor) {
 INSTANTIATE_TEST_SUITE_P(Seeds, CorruptedLog, ::testing::Range(0, 20));
 
 TEST(CandumpSource, DecodesTheMeasuredLogAsItsNotesSay) {
-  const auto path = testing::shared_data() / "can_log" / "can_sample.log";
+  const auto path = test::shared_data() / "can_log" / "can_sample.log";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "measured data not found: " << path;
   auto source = CandumpSource::open({.path = path.string()});
   ASSERT_TRUE(source.ok()) << source.error_text();

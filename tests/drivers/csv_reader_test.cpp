@@ -13,9 +13,9 @@
 
 namespace dampline::drivers {
 namespace {
+using test::TemporaryFile;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::TemporaryFile;
 
 struct Table {
   bool opened{false};
@@ -230,7 +230,7 @@ TEST(CsvReader, BearsRandomCorruption) {
 }
 
 TEST(CsvReader, ReadsTheMeasuredRigRecords) {
-  const auto path = testing::shared_data() / "emps" / "emps_train.csv";
+  const auto path = test::shared_data() / "emps" / "emps_train.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "measured data not found: " << path;
   auto reader = CsvReader::open({.path = path.string(),
                                  .required = {"time_s", "deflection_m"},

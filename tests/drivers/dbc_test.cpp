@@ -76,7 +76,7 @@ TEST(Dbc, ReadsExtendedIdentifiersMotorolaOrderAndMultiplexing) {
 }
 
 TEST(Dbc, ReadsTheSharedSampleWithItsMissingSpaces) {
-  const auto path = testing::shared_data() / "can_log" / "sample_can_spec.dbc";
+  const auto path = test::shared_data() / "can_log" / "sample_can_spec.dbc";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "measured data not found: " << path;
   const auto dbc = load_dbc(path.string());
   ASSERT_TRUE(dbc.ok()) << dbc.error_text();
@@ -111,7 +111,7 @@ TEST(Dbc, ErrorsNameFileLineWhatWasFoundAndWhatWasExpected) {
 
 TEST(Dbc, SaysThatAFileIsNotThereOrEmpty) {
   EXPECT_THAT(load_dbc("/nonexistent/a.dbc").error_text(), HasSubstr("/nonexistent/a.dbc"));
-  const testing::TemporaryFile empty{""};
+  const test::TemporaryFile empty{""};
   EXPECT_THAT(load_dbc(empty.path()).error_text(), HasSubstr("empty"));
 }
 

@@ -19,7 +19,7 @@ namespace {
 class MeasuredLog : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto folder = testing::shared_data() / "can_log";
+    const auto folder = test::shared_data() / "can_log";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "measured data not found: " << folder;
     dbc_ = load_dbc((folder / "sample_can_spec.dbc").string()).value();
     auto source = CandumpSource::open({.path = (folder / "can_sample.log").string()});

@@ -59,7 +59,7 @@ TEST(NoAllocation, ReadingACandumpLog) {
     text += fmt::format("(1600000000.{:06}) can{} 123#1122334455667788\n", i * 10 - i % 7, i % 5);
     if (i % 100 == 50) text += "(not a line\n";
   }
-  const testing::TemporaryFile file{text};
+  const test::TemporaryFile file{text};
   auto source = CandumpSource::open({.path = file.path(), .skip_bad_lines = true});
   EXPECT_EQ(read_without_allocation(*source.value()), 20000U);
 }
@@ -67,7 +67,7 @@ TEST(NoAllocation, ReadingACandumpLog) {
 TEST(NoAllocation, ReadingATable) {
   std::string text = "time_s,note,force_n\n";
   for (int i = 0; i < 20000; ++i) text += fmt::format("{},7,{}\n", i, 0.1 * i);
-  const testing::TemporaryFile file{text};
+  const test::TemporaryFile file{text};
   auto reader = CsvReader::open({.path = file.path(), .required = {"time_s", "force_n"}});
   std::array<double, 128> rows{};
   std::size_t count = 0;
@@ -79,12 +79,12 @@ TEST(NoAllocation, ReadingATable) {
 }
 
 TEST(NoAllocation, WritingToABlackBoxWithinAFile) {
-  const testing::BoxFolder folder;
-  const auto writer = testing::open_box(testing::box_config(folder.path()));
-  writer->write(testing::numbered_frame(0));
+  const test::BoxFolder folder;
+  const auto writer = test::open_box(test::box_config(folder.path()));
+  writer->write(test::numbered_frame(0));
   const std::uint64_t before = allocations;
   for (std::uint64_t i = 1; i < 100'000; ++i) {
-    writer->write(testing::numbered_frame(i));
+    writer->write(test::numbered_frame(i));
     if (i % 1000 == 0) writer->write(hal::Event{});
     if (i % 100 == 0) writer->tick(static_cast<std::int64_t>(i) * 10'000'000);
   }
@@ -93,13 +93,13 @@ TEST(NoAllocation, WritingToABlackBoxWithinAFile) {
 }
 
 TEST(NoAllocation, ReadingABlackBoxFromFileToFile) {
-  const testing::BoxFolder folder;
-  auto config = testing::box_config(folder.path());
+  const test::BoxFolder folder;
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 100'000;
-  testing::write_box(config, 0, 20'000);
-  std::string bytes = testing::bytes_of(folder.file(1));
+  test::write_box(config, 0, 20'000);
+  std::string bytes = test::bytes_of(folder.file(1));
   bytes[5000] = static_cast<char>(~bytes[5000]);
-  testing::write_bytes(folder.file(1), bytes);
+  test::write_bytes(folder.file(1), bytes);
   auto source = BlackboxSource::open({folder.path(), {}});
   EXPECT_EQ(read_without_allocation(*source.value()), 19'999U);
   EXPECT_GT(source.value()->findings().files, 5U);

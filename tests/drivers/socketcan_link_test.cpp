@@ -17,43 +17,44 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Bytes = std::vector<std::byte>;
+using Message = std::vector<std::byte>;
 
 template <class T>
-Bytes bytes_of(const T& value) {
-  Bytes bytes(sizeof(T));
+Message bytes_of(const T& value) {
+  Message bytes(sizeof(T));
   std::memcpy(bytes.data(), &value, sizeof(T));
   return bytes;
 }
 
-Bytes bytes_of(const char* text) {
-  Bytes bytes(std::strlen(text) + 1);
+Message bytes_of(const char* text) {
+  Message bytes(std::strlen(text) + 1);
   std::memcpy(bytes.data(), text, bytes.size());
   return bytes;
 }
 
-Bytes operator+(Bytes a, const Bytes& b) {
+Message operator+(Message a, const Message& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
 
-Bytes padded(Bytes bytes) {
+Message padded(Message bytes) {
   bytes.resize((bytes.size() + 3) / 4 * 4);
   return bytes;
 }
 
-Bytes attribute(int type, const Bytes& payload) {
+Message attribute(int type, const Message& payload) {
   const rtattr header{static_cast<unsigned short>(sizeof(rtattr) + payload.size()),
                       static_cast<unsigned short>(type)};
   return padded(bytes_of(header) + payload);
 }
 
-Bytes message(const Bytes& attributes, unsigned flags = IFF_UP, unsigned short type = ARPHRD_CAN) {
+Message message(const Message& attributes, unsigned flags = IFF_UP,
+                unsigned short type = ARPHRD_CAN) {
   ifinfomsg info{};
   info.ifi_type = type;
   info.ifi_index = 4;
   info.ifi_flags = flags;
-  const Bytes body = bytes_of(info) + attributes;
+  const Message body = bytes_of(info) + attributes;
   nlmsghdr header{};
   header.nlmsg_len = static_cast<std::uint32_t>(sizeof(header) + body.size());
   header.nlmsg_type = RTM_NEWLINK;
@@ -61,19 +62,19 @@ Bytes message(const Bytes& attributes, unsigned flags = IFF_UP, unsigned short t
 }
 
 /// can0 of a controller: 250 kbit/s, error-passive.
-Bytes controller(std::uint32_t restart_ms) {
+Message controller(std::uint32_t restart_ms) {
   can_bittiming timing{};
   timing.bitrate = 250'000;
-  const Bytes data = attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
-                     attribute(IFLA_CAN_STATE, bytes_of(std::uint32_t{2})) +
-                     attribute(IFLA_CAN_RESTART_MS, bytes_of(restart_ms));
+  const Message data = attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
+                       attribute(IFLA_CAN_STATE, bytes_of(std::uint32_t{2})) +
+                       attribute(IFLA_CAN_RESTART_MS, bytes_of(restart_ms));
   return message(attribute(IFLA_IFNAME, bytes_of("can0")) +
                  attribute(IFLA_MTU, bytes_of(std::uint32_t{16})) +
                  attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, bytes_of("can")) +
                                               attribute(IFLA_INFO_DATA, data)));
 }
 
-Bytes virtual_bus(unsigned flags) {
+Message virtual_bus(unsigned flags) {
   return message(attribute(IFLA_IFNAME, bytes_of("vcan0")) +
                      attribute(IFLA_MTU, bytes_of(std::uint32_t{72})) +
                      attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, bytes_of("vcan"))),
@@ -115,14 +116,14 @@ TEST(CanLink, LeavesOtherNetworksAlone) {
 }
 
 TEST(CanLink, SurvivesEveryTruncationAndEveryByte) {
-  const Bytes whole = controller(100) + virtual_bus(IFF_UP);
+  const Message whole = controller(100) + virtual_bus(IFF_UP);
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    const Bytes part{whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)};
+    const Message part{whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)};
     EXPECT_LT(parse_links(part).size(), 2U);
   }
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const unsigned value : {0U, 1U, 0x7FU, 0xFFU}) {
-      Bytes changed = whole;
+      Message changed = whole;
       changed[at] = static_cast<std::byte>(value);
       EXPECT_LE(parse_links(changed).size(), 2U);
     }

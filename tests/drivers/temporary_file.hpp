@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace dampline::testing {
+namespace dampline::test {
 
 /// A file with the given content for the time of one test.
 class TemporaryFile {
@@ -48,4 +48,4 @@ inline std::string content_of(const std::filesystem::path& path) {
   return all.str();
 }
 
-}  // namespace dampline::testing
+}  // namespace dampline::test

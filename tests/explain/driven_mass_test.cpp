@@ -15,7 +15,7 @@
 namespace dampline::app {
 namespace {
 
-using dampline::testing::value_of;
+using dampline::test::value_of;
 
 constexpr double kMassKg = 1.7;
 constexpr double kViscous = 6.0;
@@ -91,7 +91,7 @@ rig::Explanation explained(const Law& law, const std::string& inertia = "identif
   config.model.base = {"viscous"};
   config.model.inertia = inertia;
   config.model.stiffness = "identify";
-  return dampline::testing::explained(record(law, hysteresis), config);
+  return dampline::test::explained(record(law, hysteresis), config);
 }
 
 void expect_the_rest(const rig::Explanation& found) {

@@ -9,7 +9,7 @@
 #include "app/record/columns.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
-namespace dampline::testing {
+namespace dampline::test {
 
 /// Dry friction and viscous damping, nothing else declared.
 inline app::Config two_terms() {
@@ -37,4 +37,4 @@ inline double value_of(const app::rig::Explanation& found, const std::string& na
   return parameter(found, name).value;
 }
 
-}  // namespace dampline::testing
+}  // namespace dampline::test

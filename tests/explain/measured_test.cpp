@@ -26,18 +26,18 @@ double mean_rrse(const rig::Fit& fit) {
 }
 
 TEST(MeasuredDamper, LacksTheMemoryOfItsReversals) {
-  if (!std::filesystem::exists(dampline::testing::shared_data() / "friction_damper"))
+  if (!std::filesystem::exists(dampline::test::shared_data() / "friction_damper"))
     GTEST_SKIP() << "no friction_damper in the shared data";
   rig::ExplainOptions options;
   for (const char* name :
        {"0.25Hz_0.5in", "0.25Hz_1.5in", "0.25Hz_1in", "0.5Hz_0.5in", "0.5Hz_1.5in", "0.5Hz_1in",
         "1Hz_0.5in", "1Hz_1.5in", "1Hz_1in", "2Hz_0.5in"})
     options.records.push_back(
-        (dampline::testing::shared_data() / (std::string{"friction_damper/harm_"} + name + ".csv"))
+        (dampline::test::shared_data() / (std::string{"friction_damper/harm_"} + name + ".csv"))
             .string());
   for (const char* name : {"ImperialValleyMCE", "KocaeliDBE"})
     options.validation.push_back(
-        (dampline::testing::shared_data() / (std::string{"friction_damper/eq_"} + name + ".csv"))
+        (dampline::test::shared_data() / (std::string{"friction_damper/eq_"} + name + ".csv"))
             .string());
   options.reference_column = "F_LuGre_authors_N";
   const rig::Explanation found = rig::explain(example("friction_damper_explain.toml"), options);
@@ -77,12 +77,12 @@ std::pair<std::string, std::string> halves_of(const std::filesystem::path& file)
 }
 
 TEST(MeasuredEmps, LacksTheDirectionOfItsFriction) {
-  const auto file = dampline::testing::shared_data() / "emps/emps_train.csv";
+  const auto file = dampline::test::shared_data() / "emps/emps_train.csv";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no emps in the shared data";
   rig::ExplainOptions options;
   const auto [first, second] = halves_of(file);
-  const dampline::testing::TemporaryFile fitted{first, ".csv"};
-  const dampline::testing::TemporaryFile held_out{second, ".csv"};
+  const dampline::test::TemporaryFile fitted{first, ".csv"};
+  const dampline::test::TemporaryFile held_out{second, ".csv"};
   options.records.push_back(fitted.path());
   options.validation.push_back(held_out.path());
   const rig::Explanation found = rig::explain(example("emps_explain.toml"), options);

@@ -16,8 +16,8 @@
 namespace dampline::app {
 namespace {
 
-using dampline::testing::explained;
-using dampline::testing::value_of;
+using dampline::test::explained;
+using dampline::test::value_of;
 
 constexpr double kForceN = 1800.0;
 

@@ -16,7 +16,7 @@
 namespace dampline::app {
 namespace {
 
-using dampline::testing::parameter;
+using dampline::test::parameter;
 
 constexpr double kRateHz = 400.0;
 constexpr double kLengthS = 40.0;
@@ -108,9 +108,9 @@ Force with_mass(double kg) {
 }
 
 rig::Explanation explained(const Force& force, std::uint64_t seed, double late_s = 0.0) {
-  const dampline::testing::TemporaryFile fitted{record_of(force, seed, late_s), ".csv"};
-  const dampline::testing::TemporaryFile other{record_of(force, seed + 1, late_s), ".csv"};
-  return rig::explain(dampline::testing::two_terms(), {{fitted.path()}, {other.path()}, "", false});
+  const dampline::test::TemporaryFile fitted{record_of(force, seed, late_s), ".csv"};
+  const dampline::test::TemporaryFile other{record_of(force, seed + 1, late_s), ".csv"};
+  return rig::explain(dampline::test::two_terms(), {{fitted.path()}, {other.path()}, "", false});
 }
 
 TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
@@ -187,10 +187,10 @@ TEST(RigNoise, NeedNotBeWhite) {
 }
 
 TEST(RigNoise, IsNotWhatRingsWhereNoModeIsLookedFor) {
-  Config config = dampline::testing::two_terms();
+  Config config = dampline::test::two_terms();
   config.model.candidates = {"offset_force"};
   const rig::Explanation found =
-      dampline::testing::explained(record_of(behind_fixture(23.0, 0.1), 73), config);
+      dampline::test::explained(record_of(behind_fixture(23.0, 0.1), 73), config);
   EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
 }
 

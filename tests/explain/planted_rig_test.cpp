@@ -100,7 +100,7 @@ rig::Explanation explained(const Law& law, bool spring, std::uint64_t seed,
   Config config;
   config.model.base = base;
   config.model.stiffness = spring ? "identify" : "auto";
-  return dampline::testing::explained(record_of(law, seed), config);
+  return dampline::test::explained(record_of(law, seed), config);
 }
 
 class NamesOnARig : public ::testing::TestWithParam<Planted> {};
@@ -244,7 +244,7 @@ TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", i / kRateHz, x + 2e-7 * noise(random),
                         12000.0 * x + 9000.0 * v + 3.0 * noise(random));
   }
-  EXPECT_TRUE(dampline::testing::explained(text).steps.empty());
+  EXPECT_TRUE(dampline::test::explained(text).steps.empty());
 }
 
 TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
@@ -259,8 +259,8 @@ TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
 }
 
 TEST(ARig, IsPredictedFromItsMotionAlone) {
-  const dampline::testing::TemporaryFile fitted{record_of(backlash(0.0037), 41), ".csv"};
-  const dampline::testing::TemporaryFile other{record_of(backlash(0.0037), 42), ".csv"};
+  const dampline::test::TemporaryFile fitted{record_of(backlash(0.0037), 41), ".csv"};
+  const dampline::test::TemporaryFile other{record_of(backlash(0.0037), 42), ".csv"};
   // The same motion with the force wiped out after the first second gives the same prediction.
   std::string wiped = record_of(backlash(0.0037), 42);
   std::string kept;
@@ -271,9 +271,9 @@ TEST(ARig, IsPredictedFromItsMotionAlone) {
     kept += line > 600 ? row.substr(0, row.rfind(',')) + ",1.0\n" : row + "\n";
     at = end + 1;
   }
-  const dampline::testing::TemporaryFile without{kept, ".csv"};
+  const dampline::test::TemporaryFile without{kept, ".csv"};
   const rig::Explanation found = rig::explain(
-      dampline::testing::two_terms(), {{fitted.path()}, {other.path(), without.path()}, "", false});
+      dampline::test::two_terms(), {{fitted.path()}, {other.path(), without.path()}, "", false});
   ASSERT_EQ(found.validation.size(), 2U);
   EXPECT_LT(found.validation[0].rrse_after, 0.5 * found.validation[0].rrse_before);
   const auto predicted = [](const PredictedRow& row) { return row.predicted_n; };

@@ -36,7 +36,7 @@ rig::Explanation explained(const std::function<double(double)>& force_at, std::u
     text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t, deflection_at(t) + 2e-7 * noise(random),
                         force_at(t) + 6.0 * noise(random));
   }
-  return dampline::testing::explained(text);
+  return dampline::test::explained(text);
 }
 
 TEST(ForceOutOfStep, IsNamedWithItsDelay) {

@@ -131,7 +131,7 @@ std::string record_of(const Plant& plant, std::uint64_t seed) {
 }
 
 Explained explained(const Plant& plant, std::uint64_t seed) {
-  const dampline::testing::TemporaryFile file{record_of(plant, seed), ".csv"};
+  const dampline::test::TemporaryFile file{record_of(plant, seed), ".csv"};
   Config config;
   config.car.moving_mass_kg = plant.moving_mass_kg;
   return explain_truck(config, {{file.path(), false}, {}, false});

@@ -16,7 +16,7 @@
 namespace dampline::app {
 namespace {
 
-using dampline::testing::explained;
+using dampline::test::explained;
 using ::testing::HasSubstr;
 
 struct Row {
@@ -143,7 +143,7 @@ TEST(AStrangersRig, MayHaveNoTimeWhereItsRateIsGiven) {
   for (const Row& r : rows(uniform()))
     text += fmt::format("{:.10f},{:.6f}\n", r.deflection_m, r.force_n);
   EXPECT_THAT(error_of(text), HasSubstr("sample_rate_hz"));
-  Config config = dampline::testing::two_terms();
+  Config config = dampline::test::two_terms();
   config.input.sample_rate_hz = 400.0;
   config.input.sample_rate_is_set = true;
   expect_quadratic(explained(text, config));

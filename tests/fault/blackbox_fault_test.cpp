@@ -14,11 +14,11 @@ namespace {
 
 using drivers::BlackboxWriter;
 using hal::EventKind;
-using testing::BoxContent;
-using testing::BoxFolder;
-using testing::kSecondNs;
-using testing::numbered_frame;
-using testing::read_box;
+using test::BoxContent;
+using test::BoxFolder;
+using test::kSecondNs;
+using test::numbered_frame;
+using test::read_box;
 
 constexpr std::uint64_t kFrames = 400;
 
@@ -32,7 +32,7 @@ struct Written {
 
 /// A run of 100 s with 4 frames a second, several files, a sync a second.
 Written write_run(const BoxFolder& folder, std::uint64_t first = 0) {
-  auto config = testing::box_config(folder.path());
+  auto config = test::box_config(folder.path());
   config.rotate_bytes = 4096;
   config.keep_bytes = 1U << 20U;
   Written written;
@@ -140,12 +140,12 @@ TEST(BlackboxFault, ShortWritesAreFinished) {
   const Written written = write_run(folder);
   EXPECT_EQ(written.health.lost, 0U);
   EXPECT_GT(fault.fired(), 1000U);
-  EXPECT_EQ(read_box(folder.path()).numbers(), testing::range(0, kFrames));
+  EXPECT_EQ(read_box(folder.path()).numbers(), test::range(0, kFrames));
 }
 
 TEST(BlackboxFault, AFailedSyncIsTheEndOfItsFileAndIsTold) {
   const BoxFolder folder;
-  const auto writer = testing::open_box(testing::box_config(folder.path()));
+  const auto writer = test::open_box(test::box_config(folder.path()));
   writer->tick(0);
   for (std::uint64_t i = 0; i < 5; ++i) writer->write(numbered_frame(i));
   writer->tick(kSecondNs);
@@ -156,26 +156,26 @@ TEST(BlackboxFault, AFailedSyncIsTheEndOfItsFileAndIsTold) {
     EXPECT_EQ(fault.fired(), 1U);
     EXPECT_EQ(fault.calls(), 2U);  // not again for that file; the second is the new one's
   }
-  const std::string old_file = testing::bytes_of(folder.file(1));
+  const std::string old_file = test::bytes_of(folder.file(1));
   EXPECT_TRUE(writer->health().recording);
   EXPECT_EQ(writer->health().failed_syncs, 1U);
   EXPECT_EQ(writer->health().last_errno, EIO);
   EXPECT_EQ(writer->health().lost, 3U);
   writer->write(numbered_frame(8));
   writer->close();
-  EXPECT_EQ(testing::bytes_of(folder.file(1)), old_file);
+  EXPECT_EQ(test::bytes_of(folder.file(1)), old_file);
   EXPECT_EQ(folder.files(), 2U);
   const BoxContent content = read_box(folder.path());
   ASSERT_EQ(content.of(EventKind::kRecordingStopped).size(), 1U);
   EXPECT_EQ(content.of(EventKind::kRecordingStopped)[0].value, EIO);
   EXPECT_EQ(told_lost(content), 3U);
   // Here the disk has them all the same.
-  EXPECT_EQ(content.numbers(), testing::range(0, 9));
+  EXPECT_EQ(content.numbers(), test::range(0, 9));
 }
 
 TEST(BlackboxFault, AFullDiskStopsRecordingWhichGoesOnByItself) {
   const BoxFolder folder;
-  const auto writer = testing::open_box(testing::box_config(folder.path()));
+  const auto writer = test::open_box(test::box_config(folder.path()));
   writer->tick(0);
   std::uint64_t next = 0;
   for (; next < 10; ++next) writer->write(numbered_frame(next));
@@ -203,8 +203,8 @@ TEST(BlackboxFault, AFullDiskStopsRecordingWhichGoesOnByItself) {
   writer->close();
   EXPECT_EQ(writer->health().lost, 20U);
   const BoxContent content = read_box(folder.path());
-  auto expected = testing::range(0, 10);
-  for (const std::uint64_t number : testing::range(30, 10)) expected.push_back(number);
+  auto expected = test::range(0, 10);
+  for (const std::uint64_t number : test::range(30, 10)) expected.push_back(number);
   EXPECT_EQ(content.numbers(), expected);
   EXPECT_EQ(content.health.dropped, 20U);
   EXPECT_EQ(content.health.malformed, 0U);  // cut back to whole records
@@ -216,7 +216,7 @@ TEST(BlackboxFault, AFullDiskStopsRecordingWhichGoesOnByItself) {
 
 TEST(BlackboxFault, AReadThatFailsIsSaidAndNotTakenForTheEnd) {
   const BoxFolder folder;
-  testing::write_box(testing::box_config(folder.path()), 0, 20000);
+  test::write_box(test::box_config(folder.path()), 0, 20000);
   bool fired = true;
   for (std::uint64_t nth = 1; fired; ++nth) {
     const ArmedFault fault{{Call::kRead, nth, EIO, false}};

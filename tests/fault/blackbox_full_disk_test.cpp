@@ -15,10 +15,10 @@ namespace dampline::fault {
 namespace {
 
 using hal::EventKind;
-using testing::BoxContent;
-using testing::BoxFolder;
-using testing::kSecondNs;
-using testing::numbered_frame;
+using test::BoxContent;
+using test::BoxFolder;
+using test::kSecondNs;
+using test::numbered_frame;
 
 constexpr std::size_t kBallast = std::size_t{3} << 20U;
 
@@ -30,7 +30,7 @@ class SmallDisk {
     mounted_ = ::unshare(CLONE_NEWNS) == 0 &&
                ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
                ::mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=4m") == 0;
-    if (mounted_) testing::write_bytes(ballast(), std::string(kBallast, 'x'));
+    if (mounted_) test::write_bytes(ballast(), std::string(kBallast, 'x'));
   }
   ~SmallDisk() {
     if (mounted_) ::umount2(folder_.path().c_str(), MNT_DETACH);
@@ -53,8 +53,7 @@ class SmallDisk {
 /// Second by second, a thousand frames each.
 class SteadyWriter {
  public:
-  explicit SteadyWriter(const drivers::BlackboxConfig& config)
-      : writer_{testing::open_box(config)} {
+  explicit SteadyWriter(const drivers::BlackboxConfig& config) : writer_{test::open_box(config)} {
     writer_->tick(0);
   }
   void seconds(int count) {
@@ -87,19 +86,19 @@ void check_accounts(const BoxContent& content, SteadyWriter& writer) {
 TEST(BlackboxFullDisk, StopsRecordingAndGoesOnWhenThereIsSpace) {
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "a file system cannot be mounted here";
-  SteadyWriter writer{testing::box_config(disk.box())};
+  SteadyWriter writer{test::box_config(disk.box())};
   writer.seconds(60);
   EXPECT_FALSE((*writer).health().recording);
   EXPECT_EQ((*writer).health().last_errno, ENOSPC);
   EXPECT_LT(disk.free_bytes(), 64U << 10U);
-  const auto full = testing::read_box(disk.box());
-  EXPECT_EQ(full.numbers(), testing::range(0, full.frames.size()));
+  const auto full = test::read_box(disk.box());
+  EXPECT_EQ(full.numbers(), test::range(0, full.frames.size()));
   EXPECT_FALSE(full.health.truncated);  // whole records only
   disk.make_room();
   writer.seconds(10);
   EXPECT_TRUE((*writer).health().recording);
   (*writer).close();
-  const auto content = testing::read_box(disk.box());
+  const auto content = test::read_box(disk.box());
   EXPECT_EQ(content.numbers().back(), writer.frames() - 1);
   check_accounts(content, writer);
 }
@@ -107,7 +106,7 @@ TEST(BlackboxFullDisk, StopsRecordingAndGoesOnWhenThereIsSpace) {
 TEST(BlackboxFullDisk, LeavesTheReserveFree) {
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "a file system cannot be mounted here";
-  auto config = testing::box_config(disk.box());
+  auto config = test::box_config(disk.box());
   config.reserve_free_bytes = 512U << 10U;
   SteadyWriter writer{config};
   writer.seconds(60);
@@ -116,20 +115,20 @@ TEST(BlackboxFullDisk, LeavesTheReserveFree) {
   disk.make_room();
   writer.seconds(10);
   (*writer).close();
-  check_accounts(testing::read_box(disk.box()), writer);
+  check_accounts(test::read_box(disk.box()), writer);
 }
 
 TEST(BlackboxFullDisk, MakesRoomItselfWhereItMay) {
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "a file system cannot be mounted here";
-  auto config = testing::box_config(disk.box());
+  auto config = test::box_config(disk.box());
   config.rotate_bytes = 100'000;
   config.keep_bytes = 600'000;
   SteadyWriter writer{config};
   writer.seconds(200);
   (*writer).close();
   EXPECT_EQ((*writer).health().lost, 0U);
-  EXPECT_EQ(testing::read_box(disk.box()).numbers().back(), writer.frames() - 1);
+  EXPECT_EQ(test::read_box(disk.box()).numbers().back(), writer.frames() - 1);
 }
 
 }  // namespace

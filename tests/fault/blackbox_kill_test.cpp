@@ -19,9 +19,9 @@ extern char** environ;
 namespace dampline::fault {
 namespace {
 
-using testing::BoxContent;
-using testing::BoxFolder;
-using testing::number_of;
+using test::BoxContent;
+using test::BoxFolder;
+using test::number_of;
 
 constexpr int kFolders = 20;
 constexpr int kKillsInEach = 10;
@@ -119,7 +119,7 @@ TEST(BlackboxKill, At200RandomMomentsLosesNothingThatWasSyncedAndInventsNothing)
       if (safe.back() > 0) {
         ASSERT_GT(after.size(), before.size());
       }
-      const BoxContent content = testing::read_box(folder.path(), 4096);
+      const BoxContent content = test::read_box(folder.path(), 4096);
       if (!content.opened) {
         ASSERT_EQ(all_safe, 0U) << content.error;
         continue;

@@ -44,19 +44,19 @@ void expect_accurate(const sim::OscillatorConfig& oscillator, double base_rms_mp
 }
 
 TEST(AccelerationOnly, FindsALinearOscillator) {
-  expect_accurate<LinearTerms>(kLinear, 2.85,
+  expect_accurate<LinearTerms>(kLinearOscillator, 2.85,
                                std::array<Expected, 2>{{{3.770, 0.002}, {355.3, 0.001}}});
 }
 
 TEST(AccelerationOnly, FindsADuffingOscillator) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.cubic_stiffness_pm2s2 = kCubic;
   expect_accurate<DuffingTerms>(
       oscillator, 2.65, std::array<Expected, 3>{{{3.770, 0.002}, {355.3, 0.001}, {kCubic, 0.003}}});
 }
 
 TEST(AccelerationOnly, FindsAVanDerPolOscillator) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.viscous_ps = -1.885;
   oscillator.quadratic_viscous_pm2s = kQuadraticViscous;
   expect_accurate<VanDerPolTerms>(
@@ -65,14 +65,14 @@ TEST(AccelerationOnly, FindsAVanDerPolOscillator) {
 }
 
 TEST(AccelerationOnly, FindsCoulombFriction) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.coulomb_mps2 = 0.5;
   expect_accurate<CoulombTerms>(
       oscillator, 3.7, std::array<Expected, 3>{{{3.770, 0.01}, {355.3, 0.001}, {0.5, 0.003}}});
 }
 
 TEST(AccelerationOnly, FindsFrictionThatGrowsWithDeflection) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.coulomb_mps2 = 0.3;
   oscillator.coulomb_slope_ps2 = 53.3;
   expect_accurate<LinearCoulombTerms>(
@@ -82,7 +82,7 @@ TEST(AccelerationOnly, FindsFrictionThatGrowsWithDeflection) {
 
 /// Six terms fitted to a system that has three of them.
 TEST(AccelerationOnly, TellsTermsThatAreThereFromThoseThatAreNot) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.coulomb_mps2 = 0.5;
   for (const std::uint64_t seed : kSeeds) {
     const auto estimate = identify<AllTerms>(simulate(oscillator, 3.7, seed))->estimate();

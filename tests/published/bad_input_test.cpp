@@ -34,7 +34,7 @@ void expect_accurate(const LinearIdentifier& identifier) {
 }
 
 TEST(AccelerationOnly, LeavesOutAWindowWithAClippedSampleAndCountsIt) {
-  const auto run = simulate(kLinear, 2.85, 31);
+  const auto run = simulate(kLinearOscillator, 2.85, 31);
   const auto damaged = feed_damaged(run, [](std::size_t n, double& mass, double&) {
     if (n == 5000) mass = 2047.0 * 4.0 * 9.80665 / 4096.0;
     return true;
@@ -47,7 +47,7 @@ TEST(AccelerationOnly, LeavesOutAWindowWithAClippedSampleAndCountsIt) {
 }
 
 TEST(AccelerationOnly, LeavesOutAWindowWithANumberThatIsNoneAndCountsIt) {
-  const auto run = simulate(kLinear, 2.85, 32);
+  const auto run = simulate(kLinearOscillator, 2.85, 32);
   const auto damaged = feed_damaged(run, [](std::size_t n, double& mass, double& base) {
     if (n >= 5000 && n < 5030) base = std::numeric_limits<double>::quiet_NaN();
     if (n == 9000) mass = std::numeric_limits<double>::infinity();
@@ -59,7 +59,7 @@ TEST(AccelerationOnly, LeavesOutAWindowWithANumberThatIsNoneAndCountsIt) {
 }
 
 TEST(AccelerationOnly, LeavesOutAWindowWithAGapAndCountsIt) {
-  const auto run = simulate(kLinear, 2.85, 33);
+  const auto run = simulate(kLinearOscillator, 2.85, 33);
   const auto damaged =
       feed_damaged(run, [](std::size_t n, double&, double&) { return n < 7000 || n >= 7001; });
   EXPECT_EQ(damaged->excluded().gaps, 1);
@@ -68,7 +68,7 @@ TEST(AccelerationOnly, LeavesOutAWindowWithAGapAndCountsIt) {
 }
 
 TEST(AccelerationOnly, TakesARepeatedTickForAGap) {
-  const auto run = simulate(kLinear, 2.85, 33);
+  const auto run = simulate(kLinearOscillator, 2.85, 33);
   const auto identifier = std::make_unique<LinearIdentifier>();
   feed(*identifier, run, 0, 3000);
   feed(*identifier, run, 2999, 3000);
@@ -77,7 +77,7 @@ TEST(AccelerationOnly, TakesARepeatedTickForAGap) {
 
 /// Whole blocks before the damage are worth as much as without it.
 TEST(AccelerationOnly, KeepsWhatItHasLearnedBeforeTheDamage) {
-  const auto run = simulate(kLinear, 2.85, 34);
+  const auto run = simulate(kLinearOscillator, 2.85, 34);
   const auto damaged = feed_damaged(run, [](std::size_t n, double&, double&) { return n != 9000; });
   const auto before = std::make_unique<LinearIdentifier>();
   feed(*before, run, 0, 9000);
@@ -94,7 +94,7 @@ TEST(AccelerationOnly, KeepsWhatItHasLearnedBeforeTheDamage) {
 }
 
 TEST(AccelerationOnly, LearnsNothingAtAStandstill) {
-  auto run = simulate(kLinear, 1e-6, 35, 30.0);
+  auto run = simulate(kLinearOscillator, 1e-6, 35, 30.0);
   const auto identifier = identify<CoulombTerms>(run);
   EXPECT_EQ(identifier->memory().blocks(), 0);
   EXPECT_EQ(identifier->excluded().quiet, 6);
@@ -103,7 +103,7 @@ TEST(AccelerationOnly, LearnsNothingAtAStandstill) {
 
 TEST(AccelerationOnly, CountsABlockWithTooFewRowsOutsideTheGate) {
   // 20 Hz: 15 samples a period leave hardly a row of seven samples of one sign.
-  auto run = simulate(kLinear, 1e-6, 36, 30.0);
+  auto run = simulate(kLinearOscillator, 1e-6, 36, 30.0);
   for (std::size_t n = 0; n < run.mass_mps2.size(); ++n) {
     run.mass_mps2[n] =
         5.0 * std::sin(2.0 * 3.141592653589793 * 45.0 * static_cast<double>(n) / 300.0);

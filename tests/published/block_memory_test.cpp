@@ -11,14 +11,14 @@ namespace dampline {
 namespace {
 
 constexpr int kColumns = 4;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, kColumns>;
+using Stored = Eigen::Matrix<double, Eigen::Dynamic, kColumns>;
 using Factor = Information<kColumns>;
 const Eigen::Vector3d kTruth{2.0, -0.5, 30.0};
 
 /// One block of rows: A theta + noise.
-Rows random_block(std::mt19937_64& random, int rows = 40, double noise = 0.1) {
+Stored random_block(std::mt19937_64& random, int rows = 40, double noise = 0.1) {
   std::normal_distribution<double> normal;
-  Rows out(rows, kColumns);
+  Stored out(rows, kColumns);
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < 3; ++j) out(i, j) = normal(random);
     out(i, 3) = out.row(i).head<3>().dot(kTruth) + noise * normal(random);
@@ -26,14 +26,14 @@ Rows random_block(std::mt19937_64& random, int rows = 40, double noise = 0.1) {
   return out;
 }
 
-Factor factor_of(const Rows& rows) {
+Factor factor_of(const Stored& rows) {
   Factor factor;
   for (int i = 0; i < rows.rows(); ++i) factor.absorb(rows.row(i).transpose());
   return factor;
 }
 
 /// Batch least squares over weighted blocks.
-Eigen::Vector3d batch(const std::vector<Rows>& blocks, const std::vector<double>& weight) {
+Eigen::Vector3d batch(const std::vector<Stored>& blocks, const std::vector<double>& weight) {
   Eigen::MatrixXd all(0, kColumns);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     if (weight[b] == 0.0) continue;
@@ -45,7 +45,7 @@ Eigen::Vector3d batch(const std::vector<Rows>& blocks, const std::vector<double>
 }
 
 template <int Entries>
-void expect_batch(const BlockMemory<kColumns, Entries>& memory, const std::vector<Rows>& blocks,
+void expect_batch(const BlockMemory<kColumns, Entries>& memory, const std::vector<Stored>& blocks,
                   const std::vector<double>& weight, double tolerance) {
   const auto estimate = memory.estimate();
   ASSERT_TRUE(estimate.ok());
@@ -59,7 +59,7 @@ void expect_batch(const BlockMemory<kColumns, Entries>& memory, const std::vecto
 TEST(BlockMemory, WithInfiniteMemoryIsTheBatch) {
   std::mt19937_64 random{1};
   BlockMemory<kColumns, 8> memory;
-  std::vector<Rows> blocks;
+  std::vector<Stored> blocks;
   for (int b = 0; b < 37; ++b) {  // merges neighbours twice
     blocks.push_back(random_block(random));
     memory.add(factor_of(blocks.back()), 40.0);
@@ -73,7 +73,7 @@ TEST(BlockMemory, WithInfiniteMemoryIsTheBatch) {
 TEST(BlockMemory, WithAWindowIsTheBatchOfTheNewestBlocks) {
   std::mt19937_64 random{2};
   BlockMemory<kColumns, 8> memory{{.memory = Memory::kWindow, .memory_blocks = 6.0}};
-  std::vector<Rows> blocks;
+  std::vector<Stored> blocks;
   for (int b = 0; b < 30; ++b) {
     blocks.push_back(random_block(random));
     memory.add(factor_of(blocks.back()), 40.0);
@@ -97,7 +97,7 @@ TEST(BlockMemory, LetsALongWindowSlideByGroupsOfBlocks) {
 TEST(BlockMemory, WithForgettingWeighsBlocksByTheirAge) {
   std::mt19937_64 random{4};
   BlockMemory<kColumns, 8> memory{{.memory = Memory::kForgetting, .memory_blocks = 5.0}};
-  std::vector<Rows> blocks;
+  std::vector<Stored> blocks;
   for (int b = 0; b < 30; ++b) {
     blocks.push_back(random_block(random));
     memory.add(factor_of(blocks.back()), 40.0);
@@ -156,7 +156,7 @@ TEST(BlockMemory, SaysNothingOfWhatTheDataDoNotDetermine) {
   std::mt19937_64 random{7};
   BlockMemory<kColumns> memory;
   for (int b = 0; b < 10; ++b) {
-    Rows rows = random_block(random);
+    Stored rows = random_block(random);
     rows.col(1) = 2.0 * rows.col(0);
     memory.add(factor_of(rows), 40.0);
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-Chain single(const Element& element, const Input& input = {}) {
+Chain one_mass(const Element& element, const Input& input = {}) {
   Chain chain{.mass_kg = {1}, .links = {{Link::kGround, 0, element}}};
   if (!input.empty()) chain.inputs = {input};
   return chain;
@@ -22,7 +22,7 @@ Chain single(const Element& element, const Input& input = {}) {
 TEST(CoulombFriction, TakesTwiceItsForceOverTheStiffnessEachHalfCycle) {
   // x = 1 - 0.04 n after n half cycles, each pi / w long; at rest where k |x| <= e.
   const auto half_s = static_cast<double>(kPi / std::sqrt(10.0L));
-  const Trajectory found = simulate(single({.k = 10, .e = 0.2L}), {{1}, {0}},
+  const Trajectory found = simulate(one_mass({.k = 10, .e = 0.2L}), {{1}, {0}},
                                     {.step_s = half_s, .samples = 40, .substeps = 128});
   for (std::size_t n = 0; n <= 25; ++n) {
     const double size = 1.0 - 0.04 * static_cast<double>(n);
@@ -37,7 +37,7 @@ TEST(CoulombFriction, TakesTwiceItsForceOverTheStiffnessEachHalfCycle) {
 
 TEST(CoulombFriction, HoldsUntilTheForceExceedsItAndThenLetsGo) {
   // x'' + 0.5 x' + 25 x + 0.2 sign x' = sin(0.5 t): at rest until sin(0.5 t) = 0.2.
-  const Chain chain = single({.k = 25, .c = 0.5L, .e = 0.2L}, {{1, 0.5L, 0}});
+  const Chain chain = one_mass({.k = 25, .c = 0.5L, .e = 0.2L}, {{1, 0.5L, 0}});
   const Trajectory found = simulate(chain, {}, {.step_s = 0.001, .samples = 3000, .substeps = 2});
   const Real release_s = 2 * std::asin(0.2L);
   const Real own = std::sqrt(25 - 0.0625L);
@@ -70,7 +70,7 @@ TEST(CoulombFriction, HoldsUntilTheForceExceedsItAndThenLetsGo) {
 }
 
 TEST(CoulombFriction, NeverExceedsItsForceWhereItHolds) {
-  const Chain chain = single({.k = 25, .c = 0.5L, .e = 0.2L}, {{1, 0.5L, 0}});
+  const Chain chain = one_mass({.k = 25, .c = 0.5L, .e = 0.2L}, {{1, 0.5L, 0}});
   const Trajectory found = simulate(chain, {}, {.step_s = 0.01, .samples = 6000, .substeps = 4});
   std::size_t at_rest = 0;
   std::size_t stops = 0;
@@ -114,7 +114,7 @@ TEST(ProgressiveFriction, StiffensOnTheWayOutAndSoftensOnTheWayBack) {
   const Real in = std::sqrt(kStiffness - kSlope);
   const Real out = std::sqrt(kStiffness + kSlope);
   const auto half_s = static_cast<double>(kPi / 2 / in + kPi / 2 / out);
-  const Trajectory found = simulate(single({.k = kStiffness, .fk = kSlope}), {{1}, {0}},
+  const Trajectory found = simulate(one_mass({.k = kStiffness, .fk = kSlope}), {{1}, {0}},
                                     {.step_s = half_s, .samples = 8, .substeps = 64});
   for (std::size_t n = 0; n < 8; ++n) {
     const auto size = static_cast<double>(std::pow(-in / out, static_cast<Real>(n)));
@@ -138,7 +138,7 @@ double change_by_refining(const Chain& chain, const Start& start, Resolution res
 TEST(SmoothFriction, IsResolvedInEveryRepresentationOfTheSign) {
   for (const Signum signum :
        {Signum::kTanh, Signum::kErf, Signum::kArctangent, Signum::kRational}) {
-    const Chain chain = single(
+    const Chain chain = one_mass(
         {.k = 25, .c = 0.5L, .e = 0.2L, .signum = signum, .sharpness_spm = 100}, {{1, 0.5L, 0}});
     EXPECT_LT(change_by_refining(chain, {},
                                  {.step_s = 0.01,
@@ -153,7 +153,7 @@ TEST(SmoothFriction, IsResolvedInEveryRepresentationOfTheSign) {
 
 TEST(SmoothFriction, TurnsIntoTheExactOne) {
   const auto run = [](Signum signum) {
-    return simulate(single({.k = 10, .e = 0.2L, .signum = signum, .sharpness_spm = 1e6L}),
+    return simulate(one_mass({.k = 10, .e = 0.2L, .signum = signum, .sharpness_spm = 1e6L}),
                     {{1}, {0}}, {.step_s = 0.01, .samples = 90, .substeps = 16});
   };
   const double exact = run(Signum::kExact).deflection_m[0][80];
@@ -175,7 +175,7 @@ TEST(Reference, RefusesWhatItCannotCompute) {
   EXPECT_THROW(static_cast<void>(simulate({.mass_kg = {}}, {}, resolution)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(simulate({.mass_kg = {1}, .links = {{0, 1, {}}}}, {}, resolution)),
                std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(simulate(single({.k = 1}), {}, {.step_s = 0, .samples = 2})),
+  EXPECT_THROW(static_cast<void>(simulate(one_mass({.k = 1}), {}, {.step_s = 0, .samples = 2})),
                std::invalid_argument);
 }
 

@@ -13,7 +13,7 @@ namespace {
 using Identifier = OscillatorIdentifier<DuffingTerms>;
 
 sim::OscillatorConfig duffing() {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.cubic_stiffness_pm2s2 = kCubic;
   return oscillator;
 }
@@ -47,7 +47,7 @@ TEST(AccelerationOnly, ABiasOfBothSensorsChangesNothing) {
 }
 
 TEST(AccelerationOnly, ALinearDriftOfBothSensorsChangesNothing) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.coulomb_mps2 = 0.5;
   const auto run = simulate(oscillator, 3.7, 21);
   expect_same(*identify<CoulombTerms>(run), *identify<CoulombTerms>(drifting(run, -0.004, 0.006)),
@@ -95,7 +95,7 @@ TEST(AccelerationOnly, TheNumberOfTheFirstTickDoesNotMatter) {
 
 /// Units: accelerations in another unit scale friction and leave ratios.
 TEST(AccelerationOnly, ScaledSignalsScaleFrictionAndNothingElse) {
-  sim::OscillatorConfig oscillator = kLinear;
+  sim::OscillatorConfig oscillator = kLinearOscillator;
   oscillator.coulomb_mps2 = 0.5;
   const auto run = simulate(oscillator, 3.7, 24, 25.0);
   auto scaled = run;

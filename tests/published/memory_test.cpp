@@ -11,10 +11,10 @@ namespace {
 
 /// 60 s at 3 Hz, then 60 s with a fifth less stiffness.
 struct Change {
-  sim::AccelerometerRun before = simulate(kLinear, 2.85, 41, 60.0);
+  sim::AccelerometerRun before = simulate(kLinearOscillator, 2.85, 41, 60.0);
   sim::AccelerometerRun after;
   Change() {
-    sim::OscillatorConfig softer = kLinear;
+    sim::OscillatorConfig softer = kLinearOscillator;
     softer.stiffness_ps2 *= 0.8;
     after = simulate(softer, 2.85, 42, 60.0);
   }

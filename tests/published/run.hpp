@@ -17,7 +17,8 @@ using AllTerms =
     TermList<Viscous, Spring, CubicSpring, VanDerPolDamper, Friction<>, ProgressiveFriction<>>;
 
 /// 3 Hz, a tenth of critical damping; with the base below some 0.25 g rms of the mass.
-inline constexpr sim::OscillatorConfig kLinear{.viscous_ps = 3.770, .stiffness_ps2 = 355.3};
+inline constexpr sim::OscillatorConfig kLinearOscillator{.viscous_ps = 3.770,
+                                                         .stiffness_ps2 = 355.3};
 inline constexpr double kCubic = 0.1 * 355.3 / (0.0069 * 0.0069);
 inline constexpr double kQuadraticViscous = 5.65 / (0.0069 * 0.0069);
 

@@ -82,11 +82,11 @@ TEST(TermList, FillsInOrderWithSignAndOffset) {
 }
 
 TEST(TermList, KnowsWhereItIsNotSmooth) {
-  using Smooth = TermList<Viscous, CubicSpring, Friction<TanhSign>>;
-  using Coulomb = TermList<Viscous, Friction<>>;
+  using Even = TermList<Viscous, CubicSpring, Friction<TanhSign>>;
+  using DryAlone = TermList<Viscous, Friction<>>;
   using Linear = TermList<Viscous, ProgressiveFriction<>>;
-  EXPECT_FALSE(Smooth::kKinkAtRest || Smooth::kKinkAtCentre);
-  EXPECT_TRUE(Coulomb::kKinkAtRest && !Coulomb::kKinkAtCentre);
+  EXPECT_FALSE(Even::kKinkAtRest || Even::kKinkAtCentre);
+  EXPECT_TRUE(DryAlone::kKinkAtRest && !DryAlone::kKinkAtCentre);
   EXPECT_TRUE(Linear::kKinkAtRest && Linear::kKinkAtCentre);
   EXPECT_TRUE((TermList<UserTerm<true>>::kKinkAtRest));
 }
@@ -106,12 +106,12 @@ TEST(Models, OfAChainActAndReact) {
 }
 
 TEST(Models, NameTheirGates) {
-  using Smooth = TermList<Viscous, Spring>;
-  using Coulomb = TermList<Viscous, Friction<>>;
-  EXPECT_EQ(SingleModel<Smooth>::kGates, 0);
-  EXPECT_EQ(SingleModel<Coulomb>::kGates, 1);
-  EXPECT_EQ((ChainModel<Smooth, Coulomb>::kGates), 2);
-  const auto chain = ChainModel<Smooth, Coulomb>{}.gates({1.0, 3.0});
+  using Even = TermList<Viscous, Spring>;
+  using DryAlone = TermList<Viscous, Friction<>>;
+  EXPECT_EQ(SingleModel<Even>::kGates, 0);
+  EXPECT_EQ(SingleModel<DryAlone>::kGates, 1);
+  EXPECT_EQ((ChainModel<Even, DryAlone>::kGates), 2);
+  const auto chain = ChainModel<Even, DryAlone>{}.gates({1.0, 3.0});
   EXPECT_EQ(chain.deflection_m, (std::array{1.0, 2.0}));
   const auto grounded = GroundedFrictionModel<>{}.gates({1.0, 3.0});
   EXPECT_EQ(grounded.deflection_m, (std::array{1.0, 3.0}));

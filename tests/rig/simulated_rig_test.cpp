@@ -8,7 +8,7 @@
 namespace dampline::test {
 namespace {
 
-constexpr double kRateHz = 1000.0;
+constexpr double kRigRateHz = 1000.0;
 constexpr rig::Terms kDrivenMass{true, true, rig::Branches::kCommon, rig::Branches::kCommon, true};
 constexpr SimulatedRig::Sensors kGood{2e-6, 1e-6, 1.0, 0.5};
 
@@ -18,12 +18,12 @@ std::vector<Tone> tones() {
 
 std::vector<rig::Sample> record(double length_s, const SimulatedRig::Sensors& sensors,
                                 std::uint64_t seed) {
-  return SimulatedRig{{}, tones()}.record(kRateHz, length_s, sensors, seed);
+  return SimulatedRig{{}, tones()}.record(kRigRateHz, length_s, sensors, seed);
 }
 
 TEST(SimulatedRig, ObeysItsEquationAwayFromReversals) {
   const auto data = record(5.0, {}, 1);
-  const double h = 1.0 / kRateHz;
+  const double h = 1.0 / kRigRateHz;
   std::size_t checked = 0;
   for (std::size_t i = 2; i + 2 < data.size(); ++i) {
     const auto x = [&](std::size_t n) { return data[n].deflection_m; };
@@ -38,7 +38,7 @@ TEST(SimulatedRig, ObeysItsEquationAwayFromReversals) {
 }
 
 TEST(RigIdentifier, FindsEveryParameterOfADrivenMassWithoutNoise) {
-  const RigRun run = run_rig(record(60.0, {}, 1), kRateHz, kDrivenMass);
+  const RigRun run = run_rig(record(60.0, {}, 1), kRigRateHz, kDrivenMass);
   ASSERT_TRUE(run.snapshot.valid);
   EXPECT_LT(percent(run.of(rig::Parameter::kMovingMass).value, 50.0), 0.1);
   EXPECT_LT(percent(run.of(rig::Parameter::kStiffness).value, 2e4), 0.1);
@@ -49,7 +49,7 @@ TEST(RigIdentifier, FindsEveryParameterOfADrivenMassWithoutNoise) {
 }
 
 TEST(RigIdentifier, FindsEveryParameterThroughNoiseAndRounding) {
-  const RigRun run = run_rig(record(60.0, kGood, 7), kRateHz, kDrivenMass);
+  const RigRun run = run_rig(record(60.0, kGood, 7), kRigRateHz, kDrivenMass);
   ASSERT_TRUE(run.snapshot.valid);
   EXPECT_LT(percent(run.of(rig::Parameter::kMovingMass).value, 50.0), 0.3);
   EXPECT_LT(percent(run.of(rig::Parameter::kStiffness).value, 2e4), 0.3);
@@ -59,8 +59,8 @@ TEST(RigIdentifier, FindsEveryParameterThroughNoiseAndRounding) {
 }
 
 TEST(RigIdentifier, LowersTheCornerWhenTheDeflectionIsNoisy) {
-  const RigRun quiet = run_rig(record(30.0, kGood, 7), kRateHz, kDrivenMass);
-  const RigRun noisy = run_rig(record(30.0, {3e-4, 1e-6, 1.0, 0.5}, 7), kRateHz, kDrivenMass);
+  const RigRun quiet = run_rig(record(30.0, kGood, 7), kRigRateHz, kDrivenMass);
+  const RigRun noisy = run_rig(record(30.0, {3e-4, 1e-6, 1.0, 0.5}, 7), kRigRateHz, kDrivenMass);
   EXPECT_LT(noisy.config.corner_hz, quiet.config.corner_hz);
   EXPECT_LT(percent(noisy.of(rig::Parameter::kMovingMass).value, 50.0), 3.0);
 }
@@ -71,8 +71,9 @@ TEST(RigIdentifier, StatesHonestStandardDeviations) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     auto phases = tones();
     for (Tone& tone : phases) tone.phase_rad += 0.7 * static_cast<double>(seed);
-    const auto data = SimulatedRig{{}, phases}.record(kRateHz, 20.0, {1e-5, 1e-6, 5.0, 0.5}, seed);
-    const RigRun run = run_rig(data, kRateHz, kDrivenMass);
+    const auto data =
+        SimulatedRig{{}, phases}.record(kRigRateHz, 20.0, {1e-5, 1e-6, 5.0, 0.5}, seed);
+    const RigRun run = run_rig(data, kRigRateHz, kDrivenMass);
     const auto check = [&](rig::Parameter parameter, double truth) {
       const Estimate estimate = run.of(parameter);
       within += std::abs(estimate.value - truth) < 2.0 * estimate.std ? 1 : 0;
@@ -90,10 +91,10 @@ TEST(RigIdentifier, StatesHonestStandardDeviations) {
 TEST(RigIdentifier, ReportsNoSpringWhereNoneWasAskedFor) {
   rig::Terms terms = kDrivenMass;
   terms.stiffness = false;
-  const RigRun run = run_rig(record(20.0, kGood, 3), kRateHz, terms);
+  const RigRun run = run_rig(record(20.0, kGood, 3), kRigRateHz, terms);
   for (std::size_t i = 0; i < run.snapshot.size; ++i)
     EXPECT_NE(run.snapshot.estimates[i].parameter, rig::Parameter::kStiffness);
-  const RigRun with = run_rig(record(20.0, kGood, 3), kRateHz, kDrivenMass);
+  const RigRun with = run_rig(record(20.0, kGood, 3), kRigRateHz, kDrivenMass);
   EXPECT_GT(run.errors.held_out_nmse, 10.0 * with.errors.held_out_nmse);
 }
 

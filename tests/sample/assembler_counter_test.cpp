@@ -9,11 +9,11 @@
 namespace dampline {
 namespace {
 
-using testing::assemble;
-using testing::Nodes;
-using testing::run;
-using testing::sort_by_time;
-using testing::wrong_samples;
+using test::assemble;
+using test::Nodes;
+using test::run;
+using test::sort_by_time;
+using test::wrong_samples;
 
 class AssemblerForEachCounter : public ::testing::TestWithParam<unsigned> {
  protected:

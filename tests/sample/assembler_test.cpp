@@ -10,11 +10,11 @@
 namespace dampline {
 namespace {
 
-using testing::assemble;
-using testing::Nodes;
-using testing::run;
-using testing::sort_by_time;
-using testing::wrong_samples;
+using test::assemble;
+using test::Nodes;
+using test::run;
+using test::sort_by_time;
+using test::wrong_samples;
 
 TEST(Assembler, SortsSwappedFrames) {
   const Nodes nodes;

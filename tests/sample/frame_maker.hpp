@@ -7,7 +7,7 @@
 
 #include "dampline/sample/assembler.hpp"
 
-namespace dampline::testing {
+namespace dampline::test {
 
 /// Three nodes as a test sees them: 12-bit values that tell their own tick, so that a sample can be
 /// checked without asking the assembler anything.
@@ -100,4 +100,4 @@ inline std::vector<CanFrame> run(const Nodes& nodes, std::int64_t from, std::int
   return frames;
 }
 
-}  // namespace dampline::testing
+}  // namespace dampline::test

@@ -11,10 +11,10 @@
 namespace dampline {
 namespace {
 
-using testing::assemble;
-using testing::Nodes;
-using testing::run;
-using testing::sort_by_time;
+using test::assemble;
+using test::Nodes;
+using test::run;
+using test::sort_by_time;
 
 constexpr std::int64_t kTicks = 3000;
 constexpr std::int64_t kClean = 40;  // at either end, where losses could not be known

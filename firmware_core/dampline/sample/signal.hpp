@@ -101,13 +101,14 @@ struct SignalBytes {
 /// Reads one signal of many frames: what follows from the layout is worked out once.
 class SignalReader {
  public:
-  /// Precondition: is_valid(signal).
+  /// Precondition: is_valid(signal), or a length of 0 (a record without frames), which reads
+  /// nothing.
   explicit constexpr SignalReader(const SignalLayout& signal) noexcept
       : signal_{signal},
         needed_{bytes_needed(signal)},
         first_{signal.start_bit / 8U},
-        unused_{64U - signal.length},
-        used_{signal.is_signed ? ~std::uint64_t{0} : ~std::uint64_t{0} >> (64U - signal.length)} {
+        unused_{signal.length > 0 ? 64U - signal.length : 0U},
+        used_{signal.is_signed ? ~std::uint64_t{0} : ~std::uint64_t{0} >> unused_} {
     const unsigned bit = signal.start_bit % 8U;
     const bool intel = signal.order == ByteOrder::kIntel;
     const unsigned before = intel ? bit : 7U - bit;

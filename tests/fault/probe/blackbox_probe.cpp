@@ -23,9 +23,9 @@ bool tell(std::uint64_t synced) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  using dampline::testing::numbered_frame;
+  using dampline::test::numbered_frame;
   if (argc != 3) return 2;
-  auto config = dampline::testing::box_config(argv[1]);
+  auto config = dampline::test::box_config(argv[1]);
   config.rotate_bytes = 300'000;
   auto opened = dampline::drivers::BlackboxWriter::open(config);
   if (!opened.ok()) return 1;
