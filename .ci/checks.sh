@@ -9,7 +9,9 @@ clang-format-14      the layout of the source
 clang-tidy-14        the rules that a compiler does not check
 shellcheck           the same for the scripts
 python3              hands the files to clang-tidy in groups
+libbenchmark-dev     the programs in bench/
 "
+readonly product=(firmware_core hal drivers sim_hw app tests/published/generate)  # the last writes the core's tables
 readonly logs=build/ci
 total_passed=0
 total_failed=0

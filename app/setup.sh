@@ -20,7 +20,6 @@ pkg-config           finds libgpiod and its version
 readonly test_packages="
 libgtest-dev         the tests' framework
 libgmock-dev         its matchers
-libbenchmark-dev     the programs in bench/
 libgmp-dev           exact arithmetic behind the wavelets' coefficients
 binutils             nm, which lists the core's symbols
 valgrind             counts instructions per sample
