@@ -14,24 +14,25 @@ namespace dampline {
 
 /// What can be wrong with the data before they say anything about the suspension.
 enum class FaultKind : std::uint8_t {
-  kClipping,         ///< values end at a level: full scale or below it
-  kStuckChannel,     ///< one value held while another channel moves
-  kSpikes,           ///< single samples that no motion explains
-  kDcJump,           ///< the zero of a channel moved at once
-  kLostSamples,      ///< by counter, or by the delay between the wheelsets
-  kRepeatedSamples,  ///< all channels once more
-  kTimingStep,       ///< a channel is later or earlier from one moment on
-  kClockDrift,       ///< a channel has a clock of its own
-  kGainChange,       ///< the sensitivity of a wheelset's sensor, as a step or slowly
-  kSoftSaturation,   ///< a sensor that reads less the more there is
-  kExcessNoise,      ///< more than declared
-  kNoiseBurst,       ///< for some blocks only
-  kResolutionLoss,   ///< the lowest bits do not move
-  kSwappedChannels,  ///< frame and wheelset, or the two wheelsets
-  kWrongPolarity,    ///< a sensor upside down
-  kWrongSampleRate,  ///< rate, wheelbase or speed are not what was declared
+  kClipping,           ///< values end at a level: full scale or below it
+  kStuckChannel,       ///< one value held while another channel moves
+  kSpikes,             ///< single samples that no motion explains
+  kDcJump,             ///< the zero of a channel moved at once
+  kLostSamples,        ///< by counter, or by the delay between the wheelsets
+  kRepeatedSamples,    ///< all channels once more
+  kTimingStep,         ///< a channel is later or earlier from one moment on
+  kClockDrift,         ///< a channel has a clock of its own
+  kGainChange,         ///< the sensitivity of a wheelset's sensor, as a step or slowly
+  kSoftSaturation,     ///< a sensor that reads less the more there is
+  kExcessNoise,        ///< more than declared
+  kNoiseBurst,         ///< for some blocks only
+  kResolutionLoss,     ///< the lowest bits do not move
+  kSwappedChannels,    ///< frame and wheelset, or the two wheelsets
+  kWrongPolarity,      ///< a sensor upside down
+  kWrongSampleRate,    ///< rate, wheelbase or speed are not what was declared
+  kIdenticalChannels,  ///< a channel shows what another one does, code for code
 };
-inline constexpr std::size_t kFaultKinds = 16;
+inline constexpr std::size_t kFaultKinds = 17;
 
 /// Where a fault is. What compares the two wheelsets cannot tell which of them it is.
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
@@ -52,18 +53,19 @@ struct Fault {
 /// The name that reports and files use.
 [[nodiscard]] constexpr const char* name_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kNames{
-      "clipping",        "stuck_channel",    "spikes",         "dc_jump",
-      "lost_samples",    "repeated_samples", "timing_step",    "clock_drift",
-      "gain_change",     "soft_saturation",  "excess_noise",   "noise_burst",
-      "resolution_loss", "swapped_channels", "wrong_polarity", "wrong_sample_rate"};
+      "clipping",          "stuck_channel",    "spikes",         "dc_jump",
+      "lost_samples",      "repeated_samples", "timing_step",    "clock_drift",
+      "gain_change",       "soft_saturation",  "excess_noise",   "noise_burst",
+      "resolution_loss",   "swapped_channels", "wrong_polarity", "wrong_sample_rate",
+      "identical_channels"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 /// The unit of Fault::size; "-" and "ratio" have none.
 [[nodiscard]] constexpr const char* unit_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kUnits{
-      "m/s^2", "s", "m/s^2", "m/s^2", "samples", "samples", "s", "ppm",
-      "%",     "%", "m/s^2", "m/s^2", "m/s^2",   "ratio",   "-", "Hz"};
+      "m/s^2", "s",     "m/s^2", "m/s^2", "samples", "samples", "s",  "ppm", "%",
+      "%",     "m/s^2", "m/s^2", "m/s^2", "ratio",   "-",       "Hz", "-"};
   return kUnits[static_cast<std::size_t>(kind)];
 }
 

@@ -34,6 +34,23 @@ TEST(Judgement, IsForFaultsThatLookLikeEffects) {
   EXPECT_FALSE(forbids_naming({}));
 }
 
+TEST(Judgement, AnImpossibleLawExplainsNothing) {
+  Explanation e = explained_by_one_effect(0.5);
+  e.final_coulomb_n = {8000.0, 40.0};
+  e.final_stiffness_npm = {5e6, 2e4};
+  conclude(0, e);
+  EXPECT_EQ(e.conclusion, Conclusion::kExplained);
+  e.final_stiffness_npm.value = -4e5;
+  conclude(0, e);
+  EXPECT_EQ(e.conclusion, Conclusion::kPartlyExplained);
+  e.step_count = 0;
+  e.final_stiffness_npm.value = 5e6;
+  e.final_coulomb_n.value = -3683.0;
+  conclude(0, e);
+  EXPECT_EQ(e.conclusion, Conclusion::kUnexplained);
+  EXPECT_FALSE(is_possible(e));
+}
+
 TEST(Judgement, LetsTheDiagnosisGoOnWhereAFaultThatPassesWasLeftOut) {
   for (const FaultKind kind : kPassing) {
     FaultView faults = with(kind, FaultChannel::kFrame);

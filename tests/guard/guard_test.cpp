@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "sim_hw/effects/registry.hpp"
@@ -63,6 +64,22 @@ const Fault& only(const Guard& guard) {
   EXPECT_EQ(guard.faults().size(), 1U) << ::testing::PrintToString(names(guard));
   static const Fault kNone{};
   return guard.faults().empty() ? kNone : guard.faults().front();
+}
+
+TEST(Guard, KnowsAChannelThatIsACopyOfAnother) {
+  for (const auto& [copy, of, channel] : {std::tuple{2U, 1U, "identical_channels wheelsets"},
+                                          std::tuple{0U, 1U, "identical_channels all"},
+                                          std::tuple{2U, 0U, "identical_channels all"}}) {
+    Guard guard{GuardConfig{}};
+    sim::Simulation simulation{sim::reference_run(sim::Load::kEmpty, 60.0, 3)};
+    for (int i = 0; i < 30 * sim::kSampleRateHz; ++i) {
+      Sample sample = sim::to_sample(simulation.next());
+      sample.accel_mps2[copy] = sample.accel_mps2[of];
+      guard.update(sample);
+    }
+    guard.finish();
+    EXPECT_THAT(names(guard), Contains(channel));
+  }
 }
 
 TEST(Guard, FindsNothingInCleanRecordsOfThreeCars) {

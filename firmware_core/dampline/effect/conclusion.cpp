@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dampline/estimate/weighted_fit.hpp"
 
@@ -246,8 +247,12 @@ double floor_ratio(const Explanation& e) noexcept {
   return left / e.floor_nmse;
 }
 
+bool is_possible(const Explanation& e) noexcept {
+  return e.final_coulomb_n.value > 0.0 && e.final_stiffness_npm.value > 0.0;
+}
+
 void conclude(std::uint64_t impacts, Explanation& e) noexcept {
-  const double ratio = floor_ratio(e);
+  const double ratio = is_possible(e) ? floor_ratio(e) : std::numeric_limits<double>::infinity();
   const double limit = impacts >= kImpacts ? kUnexplainedAboveWithImpacts : kUnexplainedAbove;
   if (e.step_count == 0) {
     e.conclusion = ratio > limit ? Conclusion::kUnexplained : Conclusion::kComplete;

@@ -65,11 +65,14 @@ struct Explanation {
 /// What is left over what a complete model leaves; 0 where that is unknown. What impacts leave that
 /// were named does not count.
 [[nodiscard]] double floor_ratio(const Explanation& explanation) noexcept;
+/// Friction and spring of the final model are more than nothing. Otherwise no floor can be
+/// computed, and no law of such a model is one of a suspension.
+[[nodiscard]] bool is_possible(const Explanation& explanation) noexcept;
 /// Above it, an effect is like what is missing, but its law is not complete.
 inline constexpr double kIncompleteAbove = 1.5;
 
-/// Decides the conclusion from the steps and the floor. `impacts`: blows in the input, which every
-/// model leaves a little of.
+/// Decides the conclusion from the steps and the floor; an impossible model explains nothing.
+/// `impacts`: blows in the input, which every model leaves a little of.
 void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
 
 /// Fills in the physical parameters of every step and of base and final model.

@@ -45,7 +45,8 @@ class FaultLog {
     std::array<std::uint16_t, kFaultChannels> kinds{};  // bit k: fault kind k
     bool gap{false};
   };
-  static_assert(kFaultKinds <= 16);
+  /// Of those that spoil seconds: identical channels spoil the whole record.
+  static_assert(static_cast<std::size_t>(FaultKind::kIdenticalChannels) == 16);
   /// Calls for each second from the first tick's to the last one's.
   template <typename Change>
   void change(std::int64_t first_tick, std::int64_t last_tick, Change what) noexcept;

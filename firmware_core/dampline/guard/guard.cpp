@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace dampline {
 namespace {
@@ -26,6 +27,7 @@ constexpr double kShareOfImpacts = 2.0;
 constexpr double kTallyKept = 0.98;  // a block
 constexpr double kWrongRate = 0.003;
 constexpr int kRateBlocks = 3;
+constexpr double kTwins = 0.9;  // clean wheelsets agree in at most 0.03 of the samples
 
 }  // namespace
 
@@ -137,6 +139,7 @@ void Guard::restart() noexcept {
 void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
   watch_full_scale(sample);
   watch_runs(sample, codes);
+  watch_twins(codes);
   if (repeats_.update(codes)) {
     if (first_repeat_ < 0) first_repeat_ = sample.tick;
     if (repeats_.found()) {
@@ -199,6 +202,29 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     run.reported = true;
     log_.report(FaultKind::kStuckChannel, channel_of(c), log_.seconds(run.first_tick),
                 log_.seconds(stuck_ticks_));
+  }
+}
+
+// Two sensors never agree in every code while they move: one of them is the other's copy.
+void Guard::watch_twins(const Codes& codes) noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const std::size_t next = (c + 1) % kChannels;
+    if (codes[c] == last_codes_[c]) continue;
+    ++twins_[c].moved;
+    if (codes[c] == codes[next]) ++twins_[c].alike;
+  }
+  last_codes_ = codes;
+}
+
+void Guard::judge_twins() noexcept {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const Twins seen = std::exchange(twins_[c], {});
+    if (seen.moved < block_ticks_ / 10 ||
+        static_cast<double>(seen.alike) < kTwins * static_cast<double>(seen.moved))
+      continue;
+    log_.report(FaultKind::kIdenticalChannels,
+                c == 1 ? FaultChannel::kWheelsets : FaultChannel::kAll, log_.seconds(block_start_),
+                1.0);
   }
 }
 
@@ -277,6 +303,7 @@ void Guard::close_block(std::int64_t tick) noexcept {
     judge_spikes(c);
     spectral_.set_impulse_power(c, impulses_[c].take());
   }
+  judge_twins();
   repeats_.forget();
   const bool whole = tick - block_start_ >= block_ticks_;
   const bool sound = whole && spectral_.steady() && log_.spoilt(block_start_, tick) == 0;

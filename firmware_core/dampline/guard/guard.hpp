@@ -85,11 +85,19 @@ class Guard {
   };
   using Codes = std::array<std::int64_t, kChannels>;
 
+  /// Samples of a block in which a pair of channels moved, and of these: both alike.
+  struct Twins {
+    std::int64_t moved{0};
+    std::int64_t alike{0};
+  };
+
   void take_gap(const Sample& sample) noexcept;
   void restart() noexcept;
   void watch_codes(const Sample& sample, const Codes& codes) noexcept;
   void watch_runs(const Sample& sample, const Codes& codes) noexcept;
   void watch_full_scale(const Sample& sample) noexcept;
+  void watch_twins(const Codes& codes) noexcept;
+  void judge_twins() noexcept;
   void take_strikes() noexcept;
   void judge_spikes(std::size_t channel) noexcept;
   void close_block(std::int64_t tick) noexcept;
@@ -119,6 +127,8 @@ class Guard {
   SpectralGuard spectral_;
   WheelsetWatch wheelsets_;
   std::array<Run, kChannels> runs_{};
+  std::array<Twins, kChannels> twins_{};  // channel c and the one after it
+  Codes last_codes_{};
   std::array<std::uint64_t, kChannels> saturated_{};
   std::array<std::int64_t, kChannels> first_saturated_{};
   std::array<SpikeTally, kChannels> spike_tally_{};
