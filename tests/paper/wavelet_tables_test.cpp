@@ -35,18 +35,24 @@ void expect_spread(const ParameterFigures& parameter, Method method, double spre
 struct SmoothCase {
   const char* name;
   CaseFigures (*run)();
-  bool faint_cubic{false};  ///< table 10: hardly excited
+  const char* faint{nullptr};      ///< names that begin so: hardly excited in 16 or 32 instants
+  double share_of_published{0.1};  ///< of the coefficient of variation, which D12 keeps
+  double d8_error{1e-5}, d8_spread{5e-5};
 };
 
-const SmoothCase kSmoothCases[]{{"Table1", product_result},
-                                {"Table3Duffing", [] { return duffing_result(true); }},
-                                {"Table3And4VanDerPol", [] { return van_der_pol_result(true); }},
-                                {"Table5Duffing", [] { return duffing_result(false); }},
-                                {"Table5And6VanDerPol", [] { return van_der_pol_result(false); }},
-                                {"Table8", [] { return duffing_chain_result(true); }},
-                                {"Table9", [] { return van_der_pol_chain_result(true); }},
-                                {"Table10", [] { return duffing_chain_result(false); }, true},
-                                {"Table11", [] { return van_der_pol_chain_result(false); }}};
+const SmoothCase kSmoothCases[]{
+    {"Table1", product_result},
+    {"Table3Duffing", [] { return duffing_result(Drive::kHalfSlope); }},
+    {"Table3DuffingByItsEquations", [] { return duffing_result(Drive::kEquations); }, nullptr, 1.0,
+     5e-5, 1e-4},
+    {"Table3And4VanDerPol", [] { return van_der_pol_result(Drive::kHalfSlope); }},
+    {"Table3And4VanDerPolByItsEquations", [] { return van_der_pol_result(Drive::kEquations); }},
+    {"Table5Duffing", [] { return duffing_result(Drive::kFree); }},
+    {"Table5And6VanDerPol", [] { return van_der_pol_result(Drive::kFree); }},
+    {"Table8", [] { return duffing_chain_result(true); }, "k3_2"},
+    {"Table9", [] { return van_der_pol_chain_result(true); }, "c3_2"},
+    {"Table10", [] { return duffing_chain_result(false); }, "k3"},
+    {"Table11", [] { return van_der_pol_chain_result(false); }}};
 
 class SmoothTable : public testing::TestWithParam<SmoothCase> {};
 
@@ -54,12 +60,14 @@ TEST_P(SmoothTable, IsBeatenByEachWavelet) {
   const CaseFigures figures = GetParam().run();
   ASSERT_GE(figures.parameters.size(), 3U);
   for (const ParameterFigures& parameter : figures.parameters) {
-    const bool faint = GetParam().faint_cubic && parameter.name.starts_with("k3");
-    expect_error(parameter, kD8Windows, faint ? 1e-2 : 1e-5);
-    expect_spread(parameter, kD8Windows, faint ? 2e-2 : 5e-5);
+    const SmoothCase& one = GetParam();
+    const bool faint = one.faint != nullptr && parameter.name.starts_with(one.faint);
+    expect_error(parameter, kD8Windows, faint ? 1e-2 : one.d8_error);
+    expect_spread(parameter, kD8Windows, faint ? 1e-1 : one.d8_spread);
     expect_error(parameter, kD12Windows, 1e-6);
     ASSERT_TRUE(parameter.published_spread) << parameter.name;
-    expect_spread(parameter, kD12Windows, *parameter.published_spread / 10.0);
+    expect_spread(parameter, kD12Windows,
+                  one.share_of_published * std::abs(parameter.published_spread->value));
     expect_error(parameter, kD16Recursive, faint ? 1e-7 : 1e-8);
     for (const Estimate& estimate : parameter.estimates)
       EXPECT_TRUE(estimate.met()) << parameter.name << ", " << estimate.method;
@@ -76,7 +84,7 @@ TEST(Equation11, ServesToo) {
     const Estimate& found = parameter.estimates.front();
     EXPECT_LE(std::abs(found.error), 1e-5) << parameter.name;
     EXPECT_LE(found.spread, 5e-5) << parameter.name;
-    EXPECT_LT(found.spread, parameter.published_spread.value()) << parameter.name;
+    EXPECT_LT(found.spread, parameter.published_spread->value) << parameter.name;
     EXPECT_GT(found.windows, 50U);
   }
 }
@@ -96,6 +104,8 @@ const FrictionCase kFrictionCases[]{
     {"Table15FastStrong", [] { return linear_coulomb_result(1.2, 10); }, 1e-6, 1e-5},
     {"Table15SlowSlight", [] { return linear_coulomb_result(0.6, 5); }, 1e-6, 1e-5},
     {"Table15SlowStrong", [] { return linear_coulomb_result(0.6, 10); }, 1e-6, 1e-5},
+    {"Table15TanhSlight", [] { return linear_coulomb_tanh_result(5); }, 1e-5, 1e-5},
+    {"Table15TanhStrong", [] { return linear_coulomb_tanh_result(10); }, 1e-5, 1e-5},
     {"Table16", teflon_result, 1e-5, 2e-5}};
 
 class FrictionTable : public testing::TestWithParam<FrictionCase> {};
@@ -114,6 +124,24 @@ TEST_P(FrictionTable, IsBeaten) {
 
 INSTANTIATE_TEST_SUITE_P(GhanemRomeo, FrictionTable, testing::ValuesIn(kFrictionCases),
                          [](const auto& one) { return std::string{one.param.name}; });
+
+TEST(Table12, DecrementsGiveFrictionAndDamping) {
+  const CaseFigures figures = coulomb_decrement_result();
+  ASSERT_EQ(figures.parameters.size(), 2U);
+  for (const ParameterFigures& parameter : figures.parameters)
+    EXPECT_LT(std::abs(parameter.estimates[0].error), 5e-3) << parameter.name;
+}
+
+/// Without the gate, as published, friction spoils the windows that hold a reversal.
+TEST(Gate, IsWhatMakesFrictionExact) {
+  for (const ParameterFigures& parameter : linear_coulomb_result(1.2, 5).parameters) {
+    const Estimate& gated = parameter.estimates.front();
+    const Estimate& ungated = parameter.estimates.back();
+    EXPECT_TRUE(gated.method.ends_with(", gated")) << gated.method;
+    EXPECT_TRUE(ungated.method.ends_with("rows, not gated")) << ungated.method;
+    EXPECT_GT(std::abs(ungated.error), 1e4 * std::abs(gated.error)) << parameter.name;
+  }
+}
 
 /// The same rows of table 13, as the publication combines them and by their information: windows
 /// in which the mass hardly moves spoil the plain mean.

@@ -74,7 +74,7 @@ Found identify_own(System system, const sim::AccelerometerRun& run) {
     case System::kCoulomb:
       return identify_oscillator<CoulombTerms<ExactSign>>(run);
     case System::kLinearCoulomb:
-      return identify_oscillator<LinearCoulombTerms>(run);
+      return identify_oscillator<LinearCoulombTerms<ExactSign>>(run);
   }
   return {};
 }

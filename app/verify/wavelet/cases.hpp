@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/verify/printed/printed.hpp"
 #include "app/verify/reference/chain.hpp"
 
 namespace dampline::app {
@@ -14,9 +16,9 @@ struct PublishedParameter {
   const char* name{""};
   const char* unit{""};
   double truth{0.0};
-  std::optional<double> value{};
-  std::optional<double> spread{};
-  bool faint{false};  ///< hardly excited: the cubic terms of table 10
+  bool faint{false};  ///< hardly excited: cubic terms of tables 8 to 10
+  std::optional<Printed> value{};
+  std::optional<Printed> spread{};
 };
 
 /// A case of Ghanem and Romeo, "A wavelet-based approach for model and parameter identification of
@@ -37,12 +39,17 @@ struct PublishedCase {
   }
 };
 
+/// How tables 3 and 4 are driven. Equations 21 to 23 give the phase (0.5 + t / Tf) t, whose rate
+/// rises from 0.5 to 2.5 rad/s; with half of that slope the rate itself rises from 0.5 to 1.5.
+enum class Drive : std::uint8_t { kFree, kEquations, kHalfSlope };
+
 // One degree of freedom, smooth.
 [[nodiscard]] PublishedCase product_case();
-[[nodiscard]] PublishedCase duffing_case(bool forced);
-[[nodiscard]] PublishedCase van_der_pol_case(bool forced);
-/// Both non-linear terms at once, table 17 only.
-[[nodiscard]] PublishedCase duffing_van_der_pol_case();
+[[nodiscard]] PublishedCase duffing_case(Drive drive);
+[[nodiscard]] PublishedCase van_der_pol_case(Drive drive);
+/// Both non-linear terms at once, table 17 only, under the input and the step of either.
+enum class InputOf : std::uint8_t { kDuffing, kVanDerPol };
+[[nodiscard]] PublishedCase duffing_van_der_pol_case(InputOf input, Drive drive);
 // Two degrees of freedom, smooth.
 [[nodiscard]] PublishedCase duffing_chain_case(bool forced);
 [[nodiscard]] PublishedCase van_der_pol_chain_case(bool forced);
@@ -55,7 +62,11 @@ struct PublishedCase {
 [[nodiscard]] PublishedCase coulomb_driven_case();
 [[nodiscard]] PublishedCase coulomb_chain_case();
 /// `ratio`: of the input's frequency to the natural one; `slope_npm`: fk.
-[[nodiscard]] PublishedCase linear_coulomb_case(double ratio, double slope_npm);
+[[nodiscard]] PublishedCase linear_coulomb_case(double ratio, double slope_npm,
+                                                sim::reference::Signum signum);
+/// The elements of table 7 with Coulomb friction in both, for the row of table 18 whose system is
+/// not published.
+[[nodiscard]] PublishedCase coulomb_elements_case();
 [[nodiscard]] PublishedCase teflon_case();
 
 }  // namespace dampline::app

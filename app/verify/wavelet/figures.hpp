@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/printed/printed.hpp"
+
 namespace dampline::app {
 
 /// What an estimate must not exceed; infinite: nothing is promised.
@@ -46,8 +48,8 @@ struct ParameterFigures {
   std::string name;
   std::string unit{};
   double truth{0.0};
-  std::optional<double> published_value{};
-  std::optional<double> published_spread{};
+  std::optional<Printed> published_value{};
+  std::optional<Printed> published_spread{};
   std::vector<Estimate> estimates;
 };
 
@@ -67,7 +69,7 @@ struct CaseFigures {
 struct Check {
   std::string what{};
   std::string unit{};
-  std::optional<double> published{};
+  std::optional<Printed> published{};
   double found{0.0};
   std::optional<double> at_most{};
   std::optional<double> at_least{};

@@ -46,13 +46,12 @@ std::string lines_of(const ParameterFigures& parameter) {
   if (parameter.published_value || parameter.published_spread) {
     std::optional<double> error;
     if (parameter.published_value) {
-      error = *parameter.published_value - parameter.truth;
+      error = parameter.published_value->value - parameter.truth;
       if (parameter.truth != 0.0) error = *error / parameter.truth;
     }
-    out +=
-        fmt::format("    {:<38} {:>20} {:>9} {:>9}\n", "published",
-                    parameter.published_value ? fmt::format("{}", *parameter.published_value) : "-",
-                    short_number(error), short_number(parameter.published_spread));
+    out += fmt::format(
+        "    {:<38} {:>20} {:>9} {:>9}\n", "published", text_of(parameter.published_value),
+        error ? fmt::format("{:.1e}", *error) : "-", text_of(parameter.published_spread));
   }
   for (const Estimate& estimate : parameter.estimates) out += line_of(estimate);
   return out;
@@ -63,10 +62,9 @@ std::string lines_of(const ParameterFigures& parameter) {
 constexpr std::size_t kPromised = 3;
 
 std::string published_text(const ParameterFigures& parameter) {
-  const std::string value =
-      parameter.published_value ? fmt::format("{:g}", *parameter.published_value) : "";
+  const std::string value = parameter.published_value ? parameter.published_value->text : "";
   const std::string spread =
-      parameter.published_spread ? fmt::format("({:.1e})", *parameter.published_spread) : "";
+      parameter.published_spread ? fmt::format("({})", parameter.published_spread->text) : "";
   if (value.empty() && spread.empty()) return "-";
   return value + (value.empty() || spread.empty() ? "" : " ") + spread;
 }
@@ -127,7 +125,7 @@ std::string check_table(const std::vector<CheckGroup>& groups) {
     for (const Check& check : group.checks) {
       fmt::format_to(std::back_inserter(out), "| {} | {} | {} | {} | {} | {:.3g}{} | {} |\n",
                      table_names(group.tables), markdown_cell(group.title),
-                     markdown_cell(check.what), short_number(check.published), bound_text(check),
+                     markdown_cell(check.what), text_of(check.published), bound_text(check),
                      check.found, check.unit == "1" ? "" : " " + check.unit,
                      check.met() ? (check.is_bound() ? "yes" : "-") : "**no**");
     }
@@ -138,6 +136,9 @@ std::string check_table(const std::vector<CheckGroup>& groups) {
 using Json = nlohmann::ordered_json;
 
 Json maybe(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json maybe(const std::optional<Printed>& figure) {
+  return figure ? Json(figure->value) : Json(nullptr);
+}
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const Estimate& estimate, const char* spread) {
@@ -154,13 +155,15 @@ Json json_of(const Estimate& estimate, const char* spread) {
 
 Json json_of(const ParameterFigures& parameter) {
   const char* const spread = parameter.truth == 0.0 ? "std" : "cov";
-  Json out{
-      {"name", parameter.name},
-      {"unit", parameter.unit},
-      {"truth", parameter.truth},
-      {"published",
-       {{"value", maybe(parameter.published_value)}, {spread, maybe(parameter.published_spread)}}},
-      {"estimates", Json::array()}};
+  Json out{{"name", parameter.name},
+           {"unit", parameter.unit},
+           {"truth", parameter.truth},
+           {"published",
+            {{"value", maybe(parameter.published_value)},
+             {spread, maybe(parameter.published_spread)},
+             {"printed_value", text_of(parameter.published_value)},
+             {std::string{"printed_"} + spread, text_of(parameter.published_spread)}}},
+           {"estimates", Json::array()}};
   for (const Estimate& estimate : parameter.estimates)
     out["estimates"].push_back(json_of(estimate, spread));
   return out;
@@ -185,6 +188,7 @@ Json json_of(const CheckGroup& group) {
     out["checks"].push_back({{"what", check.what},
                              {"unit", check.unit},
                              {"published", maybe(check.published)},
+                             {"printed", text_of(check.published)},
                              {"found", finite(check.found)},
                              {"at_most", maybe(check.at_most)},
                              {"at_least", maybe(check.at_least)},
@@ -208,9 +212,7 @@ std::string bound_text(const Check& check) {
   return out.empty() ? "-" : out;
 }
 
-std::string short_number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.1e}", *value) : "-";
-}
+std::string text_of(const std::optional<Printed>& figure) { return figure ? figure->text : "-"; }
 
 std::string text_of(const CaseFigures& figures) {
   std::string out = heading(figures.tables, figures.title);
@@ -229,7 +231,7 @@ std::string text_of(const CheckGroup& group) {
   for (const Check& check : group.checks) {
     fmt::format_to(std::back_inserter(out),
                    "    {:<58} {:>11.4g} {:<4} published {:>8}  {:<22} {}\n", check.what,
-                   check.found, check.unit == "1" ? "" : check.unit, short_number(check.published),
+                   check.found, check.unit == "1" ? "" : check.unit, text_of(check.published),
                    bound_text(check), verdict(check));
   }
   return out;

@@ -16,7 +16,7 @@ namespace dampline::app {
 [[nodiscard]] std::string table_names(const std::vector<std::string>& tables);
 /// "<= 4", ">= 0.1, <= 0.2", or "-" where nothing is promised.
 [[nodiscard]] std::string bound_text(const Check& check);
-/// "1.2e-07", or "-" where there is none.
-[[nodiscard]] std::string short_number(const std::optional<double>& value);
+/// As printed, or "-" where there is none.
+[[nodiscard]] std::string text_of(const std::optional<Printed>& figure);
 
 }  // namespace dampline::app

@@ -109,10 +109,36 @@ double sliding_window(const std::vector<Equation>& rows) {
   return worst;
 }
 
+/// Factor between the published coefficients of variation and those found by D8 in windows of 32
+/// rows: 1 is the same; the geometric mean over the parameters.
+template <class M>
+double cov_factor(PublishedCase published, const M& model, std::size_t samples) {
+  published.resolution.samples = samples;
+  const MethodResult found = over_windows<MotionRows<D8, M>>(
+      measured<1>(published.simulate(), published.chain.mass_kg), model, kPublishedWindowRows);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < found.value.size(); ++i) {
+    const double cov = std::abs(found.std[i] / found.value[i]);
+    sum += std::abs(std::log(cov / std::abs(published.parameters[i].spread->value)));
+  }
+  return std::exp(sum / static_cast<double>(found.value.size()));
+}
+
+double cov_factor_of_both(Drive drive, bool whole) {
+  constexpr std::size_t kLevelNine = 512;
+  const PublishedCase duffing = duffing_case(drive);
+  const PublishedCase van_der_pol = van_der_pol_case(drive);
+  const auto samples = [&](const PublishedCase& one) {
+    return whole ? one.resolution.samples : kLevelNine;
+  };
+  return std::sqrt(cov_factor(duffing, Duffing{}, samples(duffing)) *
+                   cov_factor(van_der_pol, SingleModel<VanDerPolTerms>{}, samples(van_der_pol)));
+}
+
 }  // namespace
 
 CaseFigures quantised_duffing_result() {
-  PublishedCase published = duffing_case(true);
+  PublishedCase published = duffing_case(Drive::kHalfSlope);
   published.tables = {"noise"};
   published.title = "Duffing, forced, deflection and force in 12 bit";
   published.notes = {
@@ -148,8 +174,31 @@ CaseFigures quantised_duffing_result() {
   return out;
 }
 
+std::vector<CheckGroup> sweep_readings() {
+  const double half = cov_factor_of_both(Drive::kHalfSlope, true);
+  const double equations = cov_factor_of_both(Drive::kEquations, true);
+  return {{.tables = {"3", "4"},
+           .title = "which sweep",
+           .notes = {"Factor between the coefficients of variation found and published, geometric "
+                     "mean over the six of table 3; 1: the same."},
+           .checks = {{"phase of equations 21 to 23, whole sweep", "1", {}, equations, {}, {}},
+                      {"half of that slope, whole sweep", "1", {}, half, equations, {}},
+                      {"phase of equations 21 to 23, 512 samples (level j = 9)",
+                       "1",
+                       {},
+                       cov_factor_of_both(Drive::kEquations, false),
+                       {},
+                       {}},
+                      {"half of that slope, 512 samples (level j = 9)",
+                       "1",
+                       {},
+                       cov_factor_of_both(Drive::kHalfSlope, false),
+                       {},
+                       {}}}}};
+}
+
 std::vector<CheckGroup> stiffness_drop() {
-  PublishedCase published = duffing_case(true);
+  PublishedCase published = duffing_case(Drive::kHalfSlope);
   const std::size_t change = published.resolution.samples / 2;
   const double step_s = published.resolution.step_s;
   published.chain.change_time_s = static_cast<sim::reference::Real>(change) * step_s;
@@ -192,7 +241,7 @@ std::vector<CheckGroup> stiffness_drop() {
 }
 
 std::vector<CheckGroup> recursive_against_batch() {
-  const PublishedCase published = duffing_case(true);
+  const PublishedCase published = duffing_case(Drive::kHalfSlope);
   const auto input = measured<1>(published.simulate(), published.chain.mass_kg);
   std::vector<Equation> rows;
   for_each_row<MotionRows<D8, Duffing>>(

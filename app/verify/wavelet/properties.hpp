@@ -21,5 +21,10 @@ namespace dampline::app {
 [[nodiscard]] std::vector<CheckGroup> single_selection();
 /// Table 18: the chain of two masses, ten terms.
 [[nodiscard]] std::vector<CheckGroup> chain_selection();
+/// Tables 17 and 18 as equation 35 has them: the error of the simulated response.
+[[nodiscard]] std::vector<CheckGroup> single_responses();
+[[nodiscard]] std::vector<CheckGroup> chain_responses();
+/// Which reading of the sweep of tables 3 and 4 fits the published coefficients of variation.
+[[nodiscard]] std::vector<CheckGroup> sweep_readings();
 
 }  // namespace dampline::app

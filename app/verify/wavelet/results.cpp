@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -33,6 +32,12 @@ CaseFigures smooth_sign_result(Signum signum, const char* formula, const char* t
   published.tables = {table};
   published.title = fmt::format("Coulomb friction, forced, sign v as {}", formula);
   return recompute(published, SingleModel<CoulombTerms<Sign>>{}, promise, 314);
+}
+
+/// Of the input of table 15.
+std::size_t two_cycles(double ratio, double step_s) {
+  const double cycle_s = 2.0 * std::numbers::pi / (5.0 * ratio);
+  return static_cast<std::size_t>(std::round(2.0 * cycle_s / step_s));
 }
 
 }  // namespace
@@ -82,9 +87,8 @@ CaseFigures product_by_omega_result() {
   published.notes = {
       "Equation 11: x x' by the product coefficients of the wavelet, which with samples for "
       "scaling coefficients are of third order in the step."};
-  constexpr std::array<double, 3> kPublishedCov{1.8e-3, 1.6e-4, 2.9e-2};
-  for (std::size_t i = 0; i < published.parameters.size(); ++i)
-    published.parameters[i].spread = kPublishedCov[i];
+  for (PublishedParameter& one : published.parameters)
+    one.spread = printed_table(ghanem_romeo(), "1").at(std::string{"COV "} + one.name, "Eq. (11)");
   const auto input = measured<1>(published.simulate(), published.chain.mass_kg);
   const Model model;
   MethodResult d8 = over_windows<ProductRows<Model, kProduct>>(input, model, kPublishedWindowRows);
@@ -98,12 +102,13 @@ CaseFigures product_by_omega_result() {
   return out;
 }
 
-CaseFigures duffing_result(bool forced) {
-  return recompute(duffing_case(forced), SingleModel<DuffingTerms>{}, kSmooth);
+CaseFigures duffing_result(Drive drive) {
+  return recompute(duffing_case(drive), SingleModel<DuffingTerms>{},
+                   drive == Drive::kEquations ? kFastSweep : kSmooth);
 }
 
-CaseFigures van_der_pol_result(bool forced) {
-  return recompute(van_der_pol_case(forced), SingleModel<VanDerPolTerms>{}, kSmooth);
+CaseFigures van_der_pol_result(Drive drive) {
+  return recompute(van_der_pol_case(drive), SingleModel<VanDerPolTerms>{}, kSmooth);
 }
 
 CaseFigures duffing_chain_result(bool forced) {
@@ -142,17 +147,29 @@ CaseFigures coulomb_rational_result() {
 }
 
 CaseFigures linear_coulomb_result(double ratio, double slope_npm) {
-  PublishedCase published = linear_coulomb_case(ratio, slope_npm);
+  PublishedCase published = linear_coulomb_case(ratio, slope_npm, Signum::kExact);
   published.title = fmt::format("linear/Coulomb friction, b = {}, fk = {} N/m", ratio, slope_npm);
-  const double cycle_s = 2.0 * std::numbers::pi / (5.0 * ratio);
-  const double rows = std::round(2.0 * cycle_s / published.resolution.step_s);
-  return recompute(published, SingleModel<LinearCoulombTerms>{}, kGated,
-                   static_cast<std::size_t>(rows));
+  return recompute(published, SingleModel<LinearCoulombTerms<ExactSign>>{}, kGated,
+                   two_cycles(ratio, published.resolution.step_s));
+}
+
+CaseFigures linear_coulomb_tanh_result(double slope_npm) {
+  constexpr double kRatio = 0.6;
+  PublishedCase published = linear_coulomb_case(kRatio, slope_npm, Signum::kTanh);
+  published.title = fmt::format(
+      "linear/Coulomb friction, b = {}, fk = {} N/m, sign v as tanh(200 v)", kRatio, slope_npm);
+  published.notes.emplace_back("tanh(200 v) as published for the motion with stops (page 854).");
+  const TanhSign sign{.sharpness_spm = 200.0};
+  const LinearCoulombTerms<TanhSign> terms{Viscous{}, Spring{}, Friction<TanhSign>{sign},
+                                           ProgressiveFriction<TanhSign>{sign}};
+  return recompute(published, SingleModel<LinearCoulombTerms<TanhSign>>{terms},
+                   friction_promise(1e-5, 1e-5), two_cycles(kRatio, published.resolution.step_s));
 }
 
 CaseFigures teflon_result() {
-  const TeflonTerms terms{Viscous{}, Spring{}, Friction<TanhSign>{},
-                          ExponentialFriction<TanhSign>{.rate_spm = 23.6, .sign = {}}};
+  const TanhSign sign{.sharpness_spm = 1000.0};
+  const TeflonTerms terms{Viscous{}, Spring{}, Friction<TanhSign>{sign},
+                          ExponentialFriction<TanhSign>{.rate_spm = 23.6, .sign = sign}};
   return recompute(teflon_case(), SingleModel<TeflonTerms>{terms}, kLongWindows, 400);
 }
 
