@@ -42,6 +42,7 @@ PARTS = {
     "other_processors": "Other processors, in emulators",
     "live": "Lateness of a live run",
     "accuracy": "Accuracy",
+    "small_parts": "The estimate for small parts",
     "diagnosis": "Missing effects",
     "diagnosis_pairs": "Two missing effects at once",
     "guards": "Faults",
@@ -238,9 +239,11 @@ def other_processors(table, text):
     for cells in (line.strip("| ").split(" | ") for line in text.splitlines()
                   if re.match(r"\| (double|single) precision", line)):
         unit, level, flash, ram, stack, mean, most, same = cells
-        table.add(f"Cortex-M7, {unit} unit, {level}",
+        table.add(f"Cortex-M7, {unit}, {level}",
                   f"{mean} instructions a sample, worst case {most}",
                   f"flash {flash}, RAM {ram}, stack {stack}; {same}")
+    for example, figure in re.findall(r"^examples/(\S+): (.*)$", text, re.M):
+        table.add(f"examples/{example}", figure)
     for figure in re.findall(r"^x86-64 without AVX2: (.*)$", text, re.M):
         table.add("x86-64 without AVX2, beside the host", figure)
     for what, figure in re.findall(r"^64-bit Arm,? (.*): (.*)$", text, re.M):

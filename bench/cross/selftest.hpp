@@ -5,20 +5,24 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "dampline/damping/estimator.hpp"
+#include "dampline/identifier.hpp"
 
 namespace dampline::cross {
 
+/// What SELFTEST_IDENTIFIER names: this, SmallIdentifier or EmbeddedIdentifier.
+using EstimateIdentifier = BasicIdentifier<kEstimateParts>;
+using Tested = SELFTEST_IDENTIFIER;
+
 /// Lies in static storage, as on a target without a heap.
 struct SelfTest {
-  Estimator identifier{EstimatorConfig{}};
+  Tested identifier{IdentifierConfig{}};
   Snapshot snapshot{};
 };
 
 inline constexpr std::array<double, kChannels> kCountMps2{49.03325 / 2048.0, 98.0665 / 2048.0,
                                                           98.0665 / 2048.0};
 
-/// The ride, sample by sample, to its snapshot; `begin()` and `end()` stand around each update.
+/// The ride, sample by sample, to its snapshot; `begin()` and `end()` stand around each push.
 template <std::size_t Samples, class Begin, class End>
 void run(SelfTest& test, const std::array<std::array<std::int16_t, kChannels>, Samples>& counts,
          Begin begin, End end) {
@@ -27,7 +31,7 @@ void run(SelfTest& test, const std::array<std::array<std::int16_t, kChannels>, S
     Sample sample{.tick = tick, .time_ns = tick * 10'000'000 / 3};
     for (std::size_t c = 0; c < kChannels; ++c) sample.accel_mps2[c] = kCountMps2[c] * instant[c];
     begin();
-    static_cast<void>(test.identifier.update(sample));
+    test.identifier.push(sample);
     end();
     ++tick;
   }

@@ -79,8 +79,13 @@ struct NoObserver {
 /// The corridor: frames or samples of one truck in, what is known out. Everything about the stream
 /// lives in here: its size is fixed, push() costs a bounded number of operations, allocates
 /// nothing and reads no clock. 0.5 to 9 MB, by its parts: place it yourself, not on the stack.
-template <Parts kParts>
+///
+/// EstimatorOfIt: Estimator, or SmallEstimator, which has no motion for the parts behind it.
+template <Parts kParts, class EstimatorOfIt = Estimator>
 class BasicIdentifier {
+  static_assert(EstimatorOfIt::kHasMotion ||
+                !(kParts.densities || kParts.phase || kParts.alarms || kParts.effects));
+
  public:
   /// kInvalidConfig when a setting is out of its range.
   [[nodiscard]] static Result<IdentifierConfig> check(const IdentifierConfig& config) noexcept;
@@ -137,7 +142,9 @@ class BasicIdentifier {
   /// Level and stiffness alone, for much less.
   [[nodiscard]] Level level() noexcept { return estimator_.level(); }
   /// The sufficient statistics, some 270 KiB: place them yourself.
-  void statistics(Statistics& out) noexcept { estimator_.export_statistics(out); }
+  void statistics(Statistics& out) noexcept requires(EstimatorOfIt::kHasStatistics) {
+    estimator_.export_statistics(out);
+  }
   [[nodiscard]] FaultView faults() const noexcept requires(kParts.guards) {
     FaultView out;
     for (const Fault& fault : guard_.faults()) out.faults[out.count++] = fault;
@@ -157,7 +164,7 @@ class BasicIdentifier {
   }
 
   [[nodiscard]] const IdentifierConfig& config() const noexcept { return config_; }
-  [[nodiscard]] Estimator& estimator() noexcept { return estimator_; }
+  [[nodiscard]] EstimatorOfIt& estimator() noexcept { return estimator_; }
   [[nodiscard]] const SampleAssembler& assembler() const noexcept { return assembler_; }
   [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
   [[nodiscard]] const FokkerPlanck& density() const noexcept { return density_; }
@@ -191,7 +198,7 @@ class BasicIdentifier {
   }
 
   IdentifierConfig config_;
-  Estimator estimator_;
+  EstimatorOfIt estimator_;
   If<kParts.frames, SampleAssembler> assembler_;
   If<kParts.guards, Guard> guard_;
   If<kParts.guards, JudgementDelay> delay_;
@@ -205,10 +212,14 @@ class BasicIdentifier {
 using Identifier = BasicIdentifier<kIdentifyParts>;
 /// Its estimate and its faults, to the last bit.
 using EmbeddedIdentifier = BasicIdentifier<kEmbeddedParts>;
+/// Samples to curve for a controller of 128 KiB: state and stack (docs/api.md, small parts).
+using SmallIdentifier = BasicIdentifier<kEstimateParts, SmallEstimator>;
+static_assert(sizeof(SmallIdentifier) <= 110UL * 1024);
 
-template <Parts kParts>
-Result<IdentifierConfig> BasicIdentifier<kParts>::check(const IdentifierConfig& config) noexcept {
-  const bool usable = Estimator::check(config.estimator).ok() &&
+template <Parts kParts, class EstimatorOfIt>
+Result<IdentifierConfig> BasicIdentifier<kParts, EstimatorOfIt>::check(
+    const IdentifierConfig& config) noexcept {
+  const bool usable = EstimatorOfIt::check(config.estimator).ok() &&
                       (!kParts.frames || SampleAssembler::check(assembler_config(config)).ok()) &&
                       (!kParts.guards || Guard::check(guard_config(config)).ok()) &&
                       config.judgement_delay_s >= 0.0;

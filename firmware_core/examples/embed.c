@@ -5,7 +5,10 @@
 
 #include "dampline/dampline.h"
 
-static long double memory[90000]; /* at least dampline_size() bytes */
+static union {
+  long double aligned;
+  unsigned char bytes[1440000]; /* at least dampline_size() */
+} memory;
 static const double range_mps2[DAMPLINE_CHANNELS] = {49.03325, 98.0665, 98.0665};
 
 int main(void) {
@@ -18,17 +21,19 @@ int main(void) {
         (dampline_signal){.length = 12, .is_signed = true, .scale = range_mps2[c] / 2048};
     channel->counter = (dampline_signal){.start_bit = 12, .length = 12, .scale = 1};
   }
-  dampline_identifier* identifier = dampline_create(memory, sizeof memory, &config);
+  dampline_identifier* identifier = dampline_create(&memory, sizeof memory, &config);
   if (identifier == NULL) {
-    fprintf(stderr, "%zu bytes are needed\n", dampline_size());
+    fprintf(stderr, "%lu bytes are needed\n", (unsigned long)dampline_size());
     return 1;
   }
   dampline_frame frame = {.length = 4};
-  long long s, us;
-  uint8_t* byte = frame.data;
-  while (scanf(" (%lld.%lld) %*s %x#%2hhx%2hhx%2hhx%2hhx", &s, &us, &frame.id, &byte[0], &byte[1],
-               &byte[2], &byte[3]) == 7) {
-    frame.time_ns = s * 1000000000 + us * 1000;
+  long s, us;
+  unsigned id, byte[4];
+  while (scanf(" (%ld.%ld) %*s %x#%2x%2x%2x%2x", &s, &us, &id, &byte[0], &byte[1], &byte[2],
+               &byte[3]) == 7) {
+    frame.time_ns = s * 1000000000LL + us * 1000LL;
+    frame.id = id;
+    for (int i = 0; i < 4; ++i) frame.data[i] = (uint8_t)byte[i];
     dampline_push_frame(identifier, &frame);
   }
   dampline_finish(identifier);

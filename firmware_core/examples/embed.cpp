@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Frames in (a log of candump on standard input), level and stiffness with their deviations out.
+#include <algorithm>
 #include <cstdio>
 
 #include "dampline/identifier.hpp"
@@ -16,10 +17,12 @@ int main() {
   if (!dampline::EmbeddedIdentifier::check(config).ok()) return 1;
   static dampline::EmbeddedIdentifier identifier{config};
   dampline::CanFrame frame{.length = 4};
-  for (long long s, us;
-       std::scanf(" (%lld.%lld) %*s %x#%2hhx%2hhx%2hhx%2hhx", &s, &us, &frame.id, &frame.data[0],
-                  &frame.data[1], &frame.data[2], &frame.data[3]) == 7;) {
-    frame.time_ns = s * 1'000'000'000 + us * 1'000;
+  unsigned id, byte[4];
+  for (long s, us; std::scanf(" (%ld.%ld) %*s %x#%2x%2x%2x%2x", &s, &us, &id, &byte[0], &byte[1],
+                              &byte[2], &byte[3]) == 7;) {
+    frame.time_ns = s * 1'000'000'000LL + us * 1'000LL;
+    frame.id = id;
+    std::copy_n(byte, 4, frame.data.begin());
     identifier.push(frame);
   }
   identifier.finish();

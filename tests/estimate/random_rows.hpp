@@ -50,7 +50,8 @@ inline double relative_difference(const RowGram& a, const RowGram& b) {
 }
 
 /// Feeds a store as the Estimator does: rows, then close, with `steps` steps after each block.
-inline void feed(BlockStore& store, const std::vector<PlainRow>& rows, int steps) {
+template <class Store>
+void feed(Store& store, const std::vector<PlainRow>& rows, int steps) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     store.absorb(rows[i].block, rows[i].scale, rows[i].row);
     if (i + 1 < rows.size() && rows[i + 1].block == rows[i].block) continue;

@@ -7,8 +7,7 @@
 namespace dampline {
 namespace {
 
-constexpr double kHalfSupportS = 208.0 / 300.0;  // of the 2 Hz scale
-constexpr double kStridesPerHalf = 4.0;          // closer rows bring nothing
+constexpr double kStridesPerHalf = 4.0;  // closer rows bring nothing
 
 /// Derivatives 2, 3 and 4 of (1 - u^2)^8 at u = n / reach, zero beyond the ends, in the factored
 /// form that keeps its digits there.
@@ -42,7 +41,8 @@ double lump(double left, double centre, double right) noexcept {
 
 }  // namespace
 
-WindowBank::WindowBank(double sample_rate_hz) noexcept {
+template <class Number, int kMostHz>
+BasicWindowBank<Number, kMostHz>::BasicWindowBank(double sample_rate_hz) noexcept {
   std::size_t start = 0;
   double half = kHalfSupportS * sample_rate_hz;
   for (Window& window : windows_) {
@@ -55,7 +55,8 @@ WindowBank::WindowBank(double sample_rate_hz) noexcept {
   }
 }
 
-void WindowBank::fill(Window& window, double step_s) noexcept {
+template <class Number, int kMostHz>
+void BasicWindowBank<Number, kMostHz>::fill(Window& window, double step_s) noexcept {
   const int reach = window.half + 1;
   const double tau_s = reach * step_s;
   const double norm = norm_of(window.half);
@@ -64,16 +65,20 @@ void WindowBank::fill(Window& window, double step_s) noexcept {
     const Bump l = bump(n - 1, reach);
     const Bump c = bump(n, reach);
     const Bump r = bump(n + 1, reach);
-    psi_[i] = norm * c.fourth;
-    window.mass += std::abs(psi_[i]);
-    lumped_psi_[i] = norm * lump(l.fourth, c.fourth, r.fourth);
-    lumped_psi1_[i] = norm * tau_s * lump(l.third, c.third, r.third);
-    lumped_double_integral_[i] = norm * tau_s * tau_s * lump(l.second, c.second, r.second);
+    const double psi = norm * c.fourth;
+    window.mass += std::abs(psi);
+    if constexpr (kHasPsi) psi_[i] = psi;
+    if (-window.half <= n && n <= 0)
+      half_psi_[window.start / 2 + static_cast<std::size_t>(n + window.half)] =
+          static_cast<float>(psi);
+    const auto number = [](double x) { return static_cast<Number>(x); };
+    lumped_psi_[i] = number(norm * lump(l.fourth, c.fourth, r.fourth));
+    lumped_psi1_[i] = number(norm * tau_s * lump(l.third, c.third, r.third));
+    lumped_double_integral_[i] = number(norm * tau_s * tau_s * lump(l.second, c.second, r.second));
   }
-  const std::span<const double> half =
-      std::span{psi_}.subspan(window.start + 1, static_cast<std::size_t>(window.half) + 1);
-  for (std::size_t i = 0; i < half.size(); ++i)
-    half_psi_[window.start / 2 + i] = static_cast<float>(half[i]);
 }
+
+template class BasicWindowBank<double, 400>;
+template class BasicWindowBank<float, 300>;
 
 }  // namespace dampline

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <span>
+#include <type_traits>
 
 namespace dampline {
 
@@ -25,13 +27,18 @@ inline constexpr std::size_t kScales = 5;
 /// The `lumped` tables are convolved with [1 10 1] / 12: applied to samples they match, to fourth
 /// order, the average by the hat function that the friction law goes through (LawAverage). They
 /// reach one sample further on each side.
-class WindowBank {
+///
+/// Number: of the tables. In single precision psi is kept once, from the end to the centre.
+template <class Number, int kMostHz>
+class BasicWindowBank {
  public:
-  static constexpr double kMaxRateHz = 400.0;
-  static constexpr int kMaxHalf = 278;
+  static constexpr bool kHasPsi = std::is_same_v<Number, double>;
+  static constexpr double kMaxRateHz = kMostHz;
+  static constexpr double kHalfSupportS = 208.0 / 300.0;  ///< of the 2 Hz scale
+  static constexpr int kMaxHalf = static_cast<int>(kHalfSupportS * kMostHz) + 1;
 
   /// `sample_rate_hz` at most kMaxRateHz.
-  explicit WindowBank(double sample_rate_hz) noexcept;
+  explicit BasicWindowBank(double sample_rate_hz) noexcept;
 
   /// Samples on each side of the centre.
   [[nodiscard]] int half(std::size_t scale) const noexcept { return windows_[scale].half; }
@@ -39,7 +46,7 @@ class WindowBank {
   [[nodiscard]] int stride(std::size_t scale) const noexcept { return windows_[scale].stride; }
 
   /// psi at -half...half.
-  [[nodiscard]] std::span<const double> psi(std::size_t scale) const noexcept {
+  [[nodiscard]] std::span<const double> psi(std::size_t scale) const noexcept requires(kHasPsi) {
     return std::span{psi_}.subspan(windows_[scale].start + 1, taps(scale));
   }
   /// The same in single precision, from the end to the centre: psi is even.
@@ -55,21 +62,22 @@ class WindowBank {
   [[nodiscard]] double marked_share(std::size_t scale, const std::array<float, Ring>& marks,
                                     std::size_t first) const noexcept {
     double sum = 0.0;
-    for (const double psi : this->psi(scale)) {
-      sum += std::abs(psi) * static_cast<double>(marks[first]);
+    const int half = windows_[scale].half;
+    for (int n = -half; n <= half; ++n) {
+      sum += std::abs(psi_at(scale, n)) * static_cast<double>(marks[first]);
       if (++first == Ring) first = 0;
     }
     return sum / mass(scale);
   }
 
   /// The lumped tables at -half-1...half+1.
-  [[nodiscard]] std::span<const double> lumped_psi(std::size_t scale) const noexcept {
+  [[nodiscard]] std::span<const Number> lumped_psi(std::size_t scale) const noexcept {
     return lumped(lumped_psi_, scale);
   }
-  [[nodiscard]] std::span<const double> lumped_psi1(std::size_t scale) const noexcept {
+  [[nodiscard]] std::span<const Number> lumped_psi1(std::size_t scale) const noexcept {
     return lumped(lumped_psi1_, scale);
   }
-  [[nodiscard]] std::span<const double> lumped_double_integral(std::size_t scale) const noexcept {
+  [[nodiscard]] std::span<const Number> lumped_double_integral(std::size_t scale) const noexcept {
     return lumped(lumped_double_integral_, scale);
   }
 
@@ -80,24 +88,36 @@ class WindowBank {
     int stride{0};
     double mass{0.0};
   };
-  static constexpr std::size_t kArena = 1104;  // sum of 2 half + 3 at the highest rate
-  using Table = std::array<double, kArena>;
+  // At least the sum of 2 half + 3 at the highest rate.
+  static constexpr std::size_t kArena = 27 * std::size_t{kMostHz} / 10 + 24;
+  using Table = std::array<Number, kArena>;
+
+  /// -half <= n <= half.
+  [[nodiscard]] double psi_at(std::size_t scale, int n) const noexcept {
+    const Window& window = windows_[scale];
+    if constexpr (kHasPsi)
+      return psi_[window.start + static_cast<std::size_t>(n + window.half + 1)];
+    else
+      return half_psi(scale)[window.half - std::abs(n)];
+  }
 
   [[nodiscard]] std::size_t taps(std::size_t scale) const noexcept {
     return 2 * static_cast<std::size_t>(windows_[scale].half) + 1;
   }
-  [[nodiscard]] std::span<const double> lumped(const Table& table,
+  [[nodiscard]] std::span<const Number> lumped(const Table& table,
                                                std::size_t scale) const noexcept {
     return std::span{table}.subspan(windows_[scale].start, taps(scale) + 2);
   }
   void fill(Window& window, double step_s) noexcept;
 
   std::array<Window, kScales> windows_{};
-  Table psi_{};
+  std::array<double, kHasPsi ? kArena : 0> psi_{};
   std::array<float, kArena / 2> half_psi_{};
   Table lumped_psi_{};
   Table lumped_psi1_{};
   Table lumped_double_integral_{};
 };
+
+using WindowBank = BasicWindowBank<double, 400>;
 
 }  // namespace dampline

@@ -31,7 +31,8 @@ Information<CurveFit::kUnknowns + 1> flat_prior(double level,
 
 }  // namespace
 
-CurveFit CurveFit::make(const ScaleFactors& total, EntryList entries, const LawProfile<true>& law,
+template <class Entries>
+CurveFit CurveFit::make(const ScaleFactors& total, Entries entries, const LawProfile<true>& law,
                         const ScaleMask& mask, const CurveNodes& nodes_mps) noexcept {
   using Model = LawModel<true>;
   ColumnMap<kUnknowns> map = ColumnMap<kUnknowns>::Zero();
@@ -47,10 +48,15 @@ CurveFit CurveFit::make(const ScaleFactors& total, EntryList entries, const LawP
   map(kTargetColumn, kUnknowns) = 1.0;
   CurveFit out;
   const double level = law.fit.theta[Model::kCoulomb];
-  out.fit = weighted_fit<kUnknowns>(total, map, mask, flat_prior(level, nodes_mps));
-  if (out.fit.ok) out.covariance = score_covariance<kUnknowns>(out.fit, entries, map);
+  const auto prior = flat_prior(level, nodes_mps);
+  out.fit = weighted_fit<kUnknowns>(total, map, mask, prior);
+  if (out.fit.ok) out.covariance = score_covariance<kUnknowns>(out.fit, entries, map, prior);
   return out;
 }
+template CurveFit CurveFit::make(const ScaleFactors&, EntryList, const LawProfile<true>&,
+                                 const ScaleMask&, const CurveNodes&) noexcept;
+template CurveFit CurveFit::make(const ScaleFactors&, GroupedList, const LawProfile<true>&,
+                                 const ScaleMask&, const CurveNodes&) noexcept;
 
 Estimate CurveFit::force(double velocity_mps, double width_mps,
                          const CurveNodes& nodes_mps) const noexcept {

@@ -16,7 +16,8 @@ struct CurveFit {
   WeightedFit<kUnknowns>::Square covariance = WeightedFit<kUnknowns>::Square::Zero();
 
   /// The law's width is taken from `law`, the broken line is fitted beside the spring.
-  static CurveFit make(const ScaleFactors& total, EntryList entries, const LawProfile<true>& law,
+  template <class Entries>
+  static CurveFit make(const ScaleFactors& total, Entries entries, const LawProfile<true>& law,
                        const ScaleMask& mask, const CurveNodes& nodes_mps) noexcept;
 
   /// Force per unit of mass at a positive velocity, and its standard deviation.

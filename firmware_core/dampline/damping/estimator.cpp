@@ -28,9 +28,10 @@ std::size_t nearest_node(const std::array<double, kCurveSegments>& nodes, double
 
 }  // namespace
 
-Result<EstimatorConfig> Estimator::check(const EstimatorConfig& config) noexcept {
+template <class Kind>
+Result<EstimatorConfig> BasicEstimator<Kind>::check(const EstimatorConfig& config) noexcept {
   const double rate = config.sample_rate_hz;
-  if (!(rate >= kMinRateHz && rate <= WindowBank::kMaxRateHz)) return Errc::kInvalidConfig;
+  if (!(rate >= kMinRateHz && rate <= kMaxRateHz)) return Errc::kInvalidConfig;
   if (!(config.moving_mass_kg > 0.0) || !std::isfinite(config.moving_mass_kg)) {
     return Errc::kInvalidConfig;
   }
@@ -41,11 +42,13 @@ Result<EstimatorConfig> Estimator::check(const EstimatorConfig& config) noexcept
     if (!(node > left && node < 10.0)) return Errc::kInvalidConfig;
     left = node;
   }
-  if (!SampleScreen::check(screen_config(config)).ok()) return Errc::kInvalidConfig;
+  if (!BasicSampleScreen<Kind::kScreened>::check(screen_config(config)).ok())
+    return Errc::kInvalidConfig;
   if (!(config.anti_alias.corner_hz >= 0.0) || config.anti_alias.order < 1 ||
       config.anti_alias.order > 8) {
     return Errc::kInvalidConfig;
   }
+  if (config.memory == Memory::kWindow && !Kind::Store::kHasWindow) return Errc::kInvalidConfig;
   if (config.memory != Memory::kInfinite &&
       !(config.memory_s >= kBlockS && std::isfinite(config.memory_s))) {
     return Errc::kInvalidConfig;
@@ -53,7 +56,8 @@ Result<EstimatorConfig> Estimator::check(const EstimatorConfig& config) noexcept
   return config;
 }
 
-Estimator::Estimator(const EstimatorConfig& config) noexcept
+template <class Kind>
+BasicEstimator<Kind>::BasicEstimator(const EstimatorConfig& config) noexcept
     : config_{config},
       step_s_{1.0 / config.sample_rate_hz},
       block_ticks_{std::lround(kBlockS * config.sample_rate_hz)},
@@ -75,13 +79,15 @@ Estimator::Estimator(const EstimatorConfig& config) noexcept
   }
 }
 
-ScreenConfig Estimator::screen_config(const EstimatorConfig& config) noexcept {
+template <class Kind>
+ScreenConfig BasicEstimator<Kind>::screen_config(const EstimatorConfig& config) noexcept {
   ScreenConfig screen = config.screen;
   screen.sample_rate_hz = config.sample_rate_hz;
   return screen;
 }
 
-UpdateResult Estimator::update(const Sample& sample) noexcept {
+template <class Kind>
+UpdateResult BasicEstimator<Kind>::update(const Sample& sample) noexcept {
   UpdateResult result;
   if (any_ && sample.tick <= newest_tick_) {
     ++counts_.repeated;
@@ -97,7 +103,8 @@ UpdateResult Estimator::update(const Sample& sample) noexcept {
   return result;
 }
 
-void Estimator::take(const Screened& screened, UpdateResult& result) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::take(const Screened& screened, UpdateResult& result) noexcept {
   const std::int64_t tick = screened.sample.tick;
   if (started_ && tick != last_tick_ + 1) take_gap(tick);
   if (!started_) open_block_ = block_of(tick);
@@ -114,7 +121,8 @@ void Estimator::take(const Screened& screened, UpdateResult& result) noexcept {
   close_blocks_before(block_of(std::max<std::int64_t>(tick - row_reach_, 0)));
 }
 
-void Estimator::count_fault(Verdict verdict, std::int64_t block) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::count_fault(Verdict verdict, std::int64_t block) noexcept {
   switch (verdict) {
     case Verdict::kGood:
       return;
@@ -132,7 +140,8 @@ void Estimator::count_fault(Verdict verdict, std::int64_t block) noexcept {
   }
 }
 
-void Estimator::take_gap(std::int64_t tick) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::take_gap(std::int64_t tick) noexcept {
   ++counts_.gaps;
   counts_.lost += static_cast<std::uint64_t>(tick - last_tick_ - 1);
   ledger_.mark(block_of(last_tick_ + 1), Cause::kGap);
@@ -143,19 +152,22 @@ void Estimator::take_gap(std::int64_t tick) noexcept {
   open_block_ = std::max(open_block_, block_of(tick));
 }
 
-void Estimator::start_stretch(std::int64_t tick) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::start_stretch(std::int64_t tick) noexcept {
   in_stretch_ = true;
   stretch_tick_ = tick;
   count_ = 0;
   first_law_ = -1;
   lift_.reset();
   velocity_.reset();
-  deflection_.reset();
+  if constexpr (kHasMotion) deflection_.reset();
   noise_.reset();
   average_.reset();
 }
 
-DAMPLINE_WIDE void Estimator::process(const Sample& sample, UpdateResult& result) noexcept {
+template <class Kind>
+DAMPLINE_WIDE void BasicEstimator<Kind>::process(const Sample& sample,
+                                                 UpdateResult& result) noexcept {
   const auto& a = sample.accel_mps2;
   const double relative_mps2 = 2.0 * a[0] - a[1] - a[2];
   const std::int64_t n = count_++;
@@ -168,38 +180,30 @@ DAMPLINE_WIDE void Estimator::process(const Sample& sample, UpdateResult& result
   choose_corner();
   double accel_mps2 = 0.0;
   if (!lift_.update(relative_mps2, accel_mps2)) return;
-  accel_mps2_[history(n - VelocityLift::kHalf)] = accel_mps2;
+  accel_mps2_[history(n - VelocityLift::kHalf)] =
+      static_cast<typename Kind::Rows::Number>(accel_mps2);
   double velocity_mps = 0.0;
   if (velocity_.update(accel_mps2, velocity_mps)) {
     take_velocity(n - velocity_delay(), velocity_mps, result);
   }
 }
 
-void Estimator::choose_corner() noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::choose_corner() noexcept {
   if (corner_chosen_ || noise_.count() < kCornerDecision) return;
   const bool noisy = noise_.std() > kNoiseForHighCornerMps2;
   velocity_.set_corner(noisy ? Baseline::Corner::k1p0Hz : Baseline::Corner::k0p7Hz);
   corner_chosen_ = true;
 }
 
-void Estimator::take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::take_velocity(std::int64_t n, double velocity_mps,
+                                         UpdateResult& result) noexcept {
   activity_ += (velocity_mps * velocity_mps - activity_) * step_s_ / kActivityTimeS;
   const bool still =
       activity_ < kStillMps * kStillMps || input_activity_ < kQuietInputMps2 * kQuietInputMps2;
   count_velocity(velocity_mps, still);
-  velocity_mps_[history(n)] = velocity_mps;
-  still_[history(n)] = still;
-  double deflection_m = 0.0;
-  if (deflection_.update(velocity_mps, deflection_m)) {
-    const std::int64_t then = n - deflection_.delay();
-    result.has_motion = true;
-    result.motion = {.tick = stretch_tick_ + then,
-                     .deflection_m = deflection_m,
-                     .velocity_mps = velocity_mps_[history(then)],
-                     .frame_mps2 = rows_.frame_mps2(then),
-                     .relative_mps2 = rows_.relative_mps2(then),
-                     .still = still_[history(then)]};
-  }
+  if constexpr (kHasMotion) take_motion(n, velocity_mps, still, result);
   const auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
   if (!average_.complete()) return;
   if (first_law_ < 0) begin_raster(n - 1);
@@ -207,7 +211,25 @@ void Estimator::take_velocity(std::int64_t n, double velocity_mps, UpdateResult&
   build_rows(n - 1);
 }
 
-void Estimator::count_velocity(double velocity_mps, bool still) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::take_motion(std::int64_t n, double velocity_mps, bool still,
+                                       UpdateResult& result) noexcept requires(kHasMotion) {
+  velocity_mps_[history(n)] = velocity_mps;
+  still_[history(n)] = still;
+  double deflection_m = 0.0;
+  if (!deflection_.update(velocity_mps, deflection_m)) return;
+  const std::int64_t then = n - deflection_.delay();
+  result.has_motion = true;
+  result.motion = {.tick = stretch_tick_ + then,
+                   .deflection_m = deflection_m,
+                   .velocity_mps = velocity_mps_[history(then)],
+                   .frame_mps2 = rows_.frame_mps2(then),
+                   .relative_mps2 = rows_.relative_mps2(then),
+                   .still = still_[history(then)]};
+}
+
+template <class Kind>
+void BasicEstimator<Kind>::count_velocity(double velocity_mps, bool still) noexcept {
   if (still) return;
   const double speed = std::abs(velocity_mps);
   ++velocity_counts_.moving;
@@ -218,7 +240,8 @@ void Estimator::count_velocity(double velocity_mps, bool still) noexcept {
 }
 
 // Centres lie on a fixed raster of ticks, of its own phase per scale: stride / 2.
-void Estimator::begin_raster(std::int64_t first_law) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::begin_raster(std::int64_t first_law) noexcept {
   first_law_ = first_law;
   for (std::size_t s = 0; s < kScales; ++s) {
     const int stride = rows_.bank().stride(s);
@@ -228,7 +251,8 @@ void Estimator::begin_raster(std::int64_t first_law) noexcept {
   }
 }
 
-void Estimator::build_rows(std::int64_t newest) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::build_rows(std::int64_t newest) noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {
     if (--until_row_[s] > 0) continue;
     until_row_[s] = rows_.bank().stride(s);
@@ -238,7 +262,8 @@ void Estimator::build_rows(std::int64_t newest) noexcept {
   }
 }
 
-void Estimator::build_row(std::size_t scale, std::int64_t centre) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::build_row(std::size_t scale, std::int64_t centre) noexcept {
   const std::int64_t block = block_of(stretch_tick_ + centre);
   if (rows_.still_share(scale, centre) > kStillShareLimit) {
     ledger_.add_still_row(block);
@@ -250,7 +275,8 @@ void Estimator::build_row(std::size_t scale, std::int64_t centre) noexcept {
   store_.absorb(block, scale, rows_.row(scale, centre));
 }
 
-void Estimator::close_blocks_before(std::int64_t block) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::close_blocks_before(std::int64_t block) noexcept {
   for (; open_block_ < block; ++open_block_) {
     const BlockStatus status =
         ledger_.close(open_block_, rows_per_block_ - static_cast<std::uint32_t>(kScales));
@@ -262,12 +288,16 @@ void Estimator::close_blocks_before(std::int64_t block) noexcept {
   }
 }
 
-void Estimator::finish() noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::finish() noexcept {
   UpdateResult result;
   Screened screened;
   while (screen_.drain(screened)) take(screened, result);
   if (started_) close_blocks_before(block_of(last_tick_) + 1);
   store_.finish();
 }
+
+template class BasicEstimator<FullEstimate>;
+template class BasicEstimator<SmallEstimate>;
 
 }  // namespace dampline

@@ -3,11 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "dampline/basis/columns.hpp"
 #include "dampline/config.hpp"
 #include "dampline/estimate/block_ledger.hpp"
 #include "dampline/estimate/block_store.hpp"
+#include "dampline/estimate/grouped_store.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/motion/anti_alias.hpp"
 #include "dampline/motion/drift_free_integral.hpp"
@@ -27,20 +29,41 @@ struct UpdateResult {
   BlockReport block{};
 };
 
+/// What an estimator keeps, and how.
+struct FullEstimate {
+  using Rows = FullRows;
+  using Store = BlockStore;
+  static constexpr std::size_t kScreened = 256;  ///< samples that the screen holds
+  static constexpr bool kHasMotion = true;       ///< UpdateResult::motion
+};
+/// For controllers of 128 KiB: at most 300 Hz, no sliding window, no motion and no statistics to
+/// merge; rows in single precision, deviations from 16 entries of grouped scales
+/// (docs/adr/0012-small-parts.md).
+struct SmallEstimate {
+  using Rows = SmallRows;
+  using Store = GroupedStore;
+  static constexpr std::size_t kScreened = 150;
+  static constexpr bool kHasMotion = false;
+};
+
 /// The corridor: a sample in, what is known out. Everything about one stream lives in here; its
 /// size is fixed, update() costs a bounded number of operations, allocates nothing and reads no
 /// clock.
 ///
 /// M z_b'' + k y + F(v) = 0 with y = 2 z_b - (z_1 + z_2), v = y'.
-class Estimator {
+template <class Kind>
+class BasicEstimator {
  public:
   static constexpr double kBlockS = 2.0;
+  static constexpr bool kHasMotion = Kind::kHasMotion;
+  static constexpr bool kHasStatistics = std::is_same_v<typename Kind::Store, BlockStore>;
+  static constexpr double kMaxRateHz = Kind::Rows::kMostHz;
 
   /// kInvalidConfig when a setting is out of its range.
   [[nodiscard]] static Result<EstimatorConfig> check(const EstimatorConfig& config) noexcept;
 
   /// Precondition: check(config).ok().
-  explicit Estimator(const EstimatorConfig& config) noexcept;
+  explicit BasicEstimator(const EstimatorConfig& config) noexcept;
 
   UpdateResult update(const Sample& sample) noexcept;
 
@@ -54,11 +77,10 @@ class Estimator {
   [[nodiscard]] Level level() noexcept;
 
   /// The sufficient statistics so far. `out` is some 270 KiB: place it yourself.
-  void export_statistics(Statistics& out) noexcept;
+  void export_statistics(Statistics& out) noexcept requires(kHasStatistics);
   /// The sums over all blocks alone, some 9 KiB.
   void export_total(ScaleFactors& out) noexcept {
-    store_.finish();
-    store_.total_to(out);
+    store_.summed_up([&out](const ScaleFactors& total, auto /*entries*/) { out = total; });
   }
   /// Starts new statistics; filters and open blocks go on. Two exports around this call merge to
   /// what one export without it would have been.
@@ -66,15 +88,22 @@ class Estimator {
 
   /// From a sample to its velocity, to its Motion, and to the last row that it is the centre of.
   [[nodiscard]] double velocity_latency_s() const noexcept;
-  [[nodiscard]] double motion_latency_s() const noexcept;
+  [[nodiscard]] double motion_latency_s() const noexcept requires(kHasMotion);
   [[nodiscard]] double row_latency_s() const noexcept;
 
   [[nodiscard]] const EstimatorConfig& config() const noexcept { return config_; }
 
  private:
   static constexpr std::size_t kHistory = 1024;
+  struct None {
+    explicit None(double /*unused*/ = 0.0) noexcept {}
+  };
+  template <class T>
+  using OfMotion = std::conditional_t<kHasMotion, T, None>;
 
   void take(const Screened& screened, UpdateResult& result) noexcept;
+  void take_motion(std::int64_t n, double velocity_mps, bool still, UpdateResult& result) noexcept
+      requires(kHasMotion);
   void count_fault(Verdict verdict, std::int64_t block) noexcept;
   void take_gap(std::int64_t tick) noexcept;
   void start_stretch(std::int64_t tick) noexcept;
@@ -105,17 +134,17 @@ class Estimator {
   std::int64_t row_reach_{0};  // samples from the centre of the longest row to the newest it needs
   std::uint32_t rows_per_block_{0};
 
-  SampleScreen screen_;
+  BasicSampleScreen<Kind::kScreened> screen_;
   Fir<VelocityLift::kHalf> lift_;
   DriftFreeIntegral velocity_;
-  DriftFreeIntegral deflection_;
+  OfMotion<DriftFreeIntegral> deflection_;
   NoiseMeter noise_;
   bool corner_chosen_{false};
   LawColumns law_;
   LawAverage average_;
-  RowBuilder rows_;
+  BasicRowBuilder<typename Kind::Rows> rows_;
   BlockLedger ledger_;
-  BlockStore store_;
+  typename Kind::Store store_;
 
   bool any_{false};      // a sample was given
   bool started_{false};  // a sample came through the screen
@@ -135,9 +164,13 @@ class Estimator {
 
   VelocityCounts velocity_counts_;
   Counts counts_;
-  std::array<double, kHistory> velocity_mps_{};  // rings, by sample of the stretch
-  std::array<double, kHistory> accel_mps2_{};    // y'' with its fast part lifted
-  std::array<bool, kHistory> still_{};
+  // Rings, by sample of the stretch.
+  std::array<typename Kind::Rows::Number, kHistory> accel_mps2_{};  // y'' with its fast part lifted
+  OfMotion<std::array<double, kHistory>> velocity_mps_{};
+  OfMotion<std::array<bool, kHistory>> still_{};
 };
+
+using Estimator = BasicEstimator<FullEstimate>;
+using SmallEstimator = BasicEstimator<SmallEstimate>;
 
 }  // namespace dampline

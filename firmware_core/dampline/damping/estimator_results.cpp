@@ -26,7 +26,8 @@ std::uint64_t hashed(std::uint64_t hash, double value) noexcept {
 
 }  // namespace
 
-StatisticsHeader Estimator::header() const noexcept {
+template <class Kind>
+StatisticsHeader BasicEstimator<Kind>::header() const noexcept {
   return {.basis_hash = basis_hash(),
           .sample_rate_hz = config_.sample_rate_hz,
           .velocity_corner_hz = corner_hz(velocity_.corner()),
@@ -39,27 +40,22 @@ StatisticsHeader Estimator::header() const noexcept {
           .counts = counts_};
 }
 
-Snapshot Estimator::snapshot() noexcept {
-  store_.finish();
-  ScaleFactors total;
-  store_.total_to(total);
-  std::array<const ScaleFactors*, kEntries> entries{};
-  const std::size_t count = store_.entries_to(entries);
-  return summarise(header(), total, EntryList{entries}.first(count),
-                   {.moving_mass_kg = config_.moving_mass_kg});
+template <class Kind>
+Snapshot BasicEstimator<Kind>::snapshot() noexcept {
+  return store_.summed_up([this](const ScaleFactors& total, auto entries) {
+    return summarise(header(), total, entries, {.moving_mass_kg = config_.moving_mass_kg});
+  });
 }
 
-Level Estimator::level() noexcept {
-  store_.finish();
-  ScaleFactors total;
-  store_.total_to(total);
-  std::array<const ScaleFactors*, kEntries> entries{};
-  const std::size_t count = store_.entries_to(entries);
-  return summarise_level(header(), total, EntryList{entries}.first(count),
-                         {.moving_mass_kg = config_.moving_mass_kg});
+template <class Kind>
+Level BasicEstimator<Kind>::level() noexcept {
+  return store_.summed_up([this](const ScaleFactors& total, auto entries) {
+    return summarise_level(header(), total, entries, {.moving_mass_kg = config_.moving_mass_kg});
+  });
 }
 
-void Estimator::export_statistics(Statistics& out) noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::export_statistics(Statistics& out) noexcept requires(kHasStatistics) {
   store_.finish();
   out.header = header();
   store_.total_to(out.total);
@@ -70,26 +66,31 @@ void Estimator::export_statistics(Statistics& out) noexcept {
   out.header.entry_count = static_cast<std::uint32_t>(count);
 }
 
-void Estimator::clear_statistics() noexcept {
+template <class Kind>
+void BasicEstimator<Kind>::clear_statistics() noexcept {
   store_.clear();
   velocity_counts_ = {};
   counts_ = {};
 }
 
-double Estimator::velocity_latency_s() const noexcept {
+template <class Kind>
+double BasicEstimator<Kind>::velocity_latency_s() const noexcept {
   return static_cast<double>(velocity_delay() + static_cast<std::int64_t>(screen_.delay())) *
          step_s_;
 }
 
-double Estimator::motion_latency_s() const noexcept {
+template <class Kind>
+double BasicEstimator<Kind>::motion_latency_s() const noexcept requires(kHasMotion) {
   return velocity_latency_s() + deflection_.delay() * step_s_;
 }
 
-double Estimator::row_latency_s() const noexcept {
+template <class Kind>
+double BasicEstimator<Kind>::row_latency_s() const noexcept {
   return static_cast<double>(row_reach_ + static_cast<std::int64_t>(screen_.delay())) * step_s_;
 }
 
-std::uint64_t Estimator::basis_hash() const noexcept {
+template <class Kind>
+std::uint64_t BasicEstimator<Kind>::basis_hash() const noexcept {
   std::uint64_t hash = hashed(0xcbf29ce484222325ULL, static_cast<double>(kBasisVersion));
   hash = hashed(hash, config_.sample_rate_hz);
   hash = hashed(hash, corner_hz(velocity_.corner()));

@@ -31,10 +31,11 @@ double stick_share(const VelocityCounts& v) noexcept {
   return v.moving > 0 ? static_cast<double>(v.sticking) / static_cast<double>(v.moving) : 0.0;
 }
 
+template <class Entries>
 struct Context {
   const StatisticsHeader& header;
   const ScaleFactors& total;
-  EntryList entries;
+  Entries entries;
   double mass_kg;
   double blocks_factor;
 };
@@ -51,7 +52,8 @@ struct LawResult {
   double held_out_nmse{0.0};
   bool ok{false};
 
-  static LawResult make(const Context& c) noexcept {
+  template <class Entries>
+  static LawResult make(const Context<Entries>& c) noexcept {
     LawResult out = without_errors(c);
     if (!out.ok) return out;
     out.nmse = out.law.fit.weighted_residual / out.law.fit.weighted_total;
@@ -62,7 +64,8 @@ struct LawResult {
   }
 
   /// Both errors left out.
-  static LawResult without_errors(const Context& c) noexcept {
+  template <class Entries>
+  static LawResult without_errors(const Context<Entries>& c) noexcept {
     LawResult out;
     out.law = Profile::make(c.total, kAllScales);
     const auto long_law = Profile::make(c.total, kLongScales);
@@ -81,7 +84,8 @@ struct LawResult {
   }
 
  private:
-  static Deviations deviations(const Context& c, const Profile& law) noexcept {
+  template <class Entries>
+  static Deviations deviations(const Context<Entries>& c, const Profile& law) noexcept {
     const auto covariance = score_covariance<Model::kUnknowns>(law.fit, c.entries, law.map);
     return c.blocks_factor * covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   }
@@ -91,27 +95,28 @@ Estimate operator*(double factor, const Estimate& e) noexcept {
   return {factor * e.value, factor * e.std};
 }
 
-void fill_law(const Context& c, const LawResult<false>& law, Snapshot& out) noexcept {
-  out.coulomb_n = c.mass_kg * law.coulomb;
-  out.stiffness_npm = c.mass_kg * law.stiffness;
+void fill_law(double mass_kg, const LawResult<false>& law, Snapshot& out) noexcept {
+  out.coulomb_n = mass_kg * law.coulomb;
+  out.stiffness_npm = mass_kg * law.stiffness;
   out.law_width_mps = law.width;
   out.nmse = law.nmse;
   out.held_out_nmse = law.held_out_nmse;
 }
 
-void fill_viscous(const Context& c, const LawResult<true>& law, Snapshot& out) noexcept {
+void fill_viscous(double mass_kg, const LawResult<true>& law, Snapshot& out) noexcept {
   const double floor =
       out.velocity_rms_mps > 0.0 ? kViscousFloor * law.coulomb.value / out.velocity_rms_mps : 0.0;
-  out.viscous_nspm = c.mass_kg * Estimate{law.viscous.value, floored(law.viscous.std, floor)};
-  out.coulomb_with_viscous_n = c.mass_kg * law.coulomb;
-  out.stiffness_with_viscous_npm = c.mass_kg * law.stiffness;
+  out.viscous_nspm = mass_kg * Estimate{law.viscous.value, floored(law.viscous.std, floor)};
+  out.coulomb_with_viscous_n = mass_kg * law.coulomb;
+  out.stiffness_with_viscous_npm = mass_kg * law.stiffness;
   out.law_width_with_viscous_mps = law.width;
   out.nmse_with_viscous = law.nmse;
   out.held_out_nmse_with_viscous = law.held_out_nmse;
 }
 
 /// The broken line holds any viscous part, so its jump has the width of the model that has one.
-void fill_curve(const Context& c, const LawProfile<true>& law, Snapshot& out) noexcept {
+template <class Entries>
+void fill_curve(const Context<Entries>& c, const LawProfile<true>& law, Snapshot& out) noexcept {
   const auto curve = CurveFit::make(c.total, c.entries, law, kAllScales, c.header.curve_nodes_mps);
   if (!curve.fit.ok) return;
   const double jump = curve.fit.theta[CurveFit::kJump];
@@ -129,8 +134,9 @@ void fill_curve(const Context& c, const LawProfile<true>& law, Snapshot& out) no
   }
 }
 
-Context context_of(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
-                   const SummaryConfig& config) noexcept {
+template <class Entries>
+Context<Entries> context_of(const StatisticsHeader& header, const ScaleFactors& total,
+                            Entries entries, const SummaryConfig& config) noexcept {
   return {.header = header,
           .total = total,
           .entries = entries,
@@ -147,7 +153,8 @@ void fill_motion(const StatisticsHeader& header, Snapshot& out) noexcept {
 
 }  // namespace
 
-Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
+template <class Entries>
+Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, Entries entries,
                    const SummaryConfig& config) noexcept {
   Snapshot out;
   out.tick = header.newest_tick;
@@ -159,13 +166,13 @@ Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, En
   }
   fill_motion(header, out);
   if (entries.size() < kFewestEntries) return out;
-  const Context context = context_of(header, total, entries, config);
+  const auto context = context_of(header, total, entries, config);
   const auto law = LawResult<false>::make(context);
   const auto viscous_law = LawResult<true>::make(context);
   out.valid = law.ok && viscous_law.ok;
   if (!out.valid) return out;
-  fill_law(context, law, out);
-  fill_viscous(context, viscous_law, out);
+  fill_law(context.mass_kg, law, out);
+  fill_viscous(context.mass_kg, viscous_law, out);
   fill_curve(context, viscous_law.law, out);
   const bool sticks = out.stick_share > kValidStickShare;
   out.std_is_lower_bound = sticks || law.width.value > kValidWidthMps;
@@ -173,16 +180,26 @@ Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total, En
   return out;
 }
 
-Level summarise_level(const StatisticsHeader& header, const ScaleFactors& total, EntryList entries,
+template <class Entries>
+Level summarise_level(const StatisticsHeader& header, const ScaleFactors& total, Entries entries,
                       const SummaryConfig& config) noexcept {
   if (entries.size() < kFewestEntries) return {};
-  const Context context = context_of(header, total, entries, config);
+  const auto context = context_of(header, total, entries, config);
   const auto law = LawResult<false>::without_errors(context);
   if (!law.ok) return {};
   return {.valid = true,
           .coulomb_n = context.mass_kg * law.coulomb,
           .stiffness_npm = context.mass_kg * law.stiffness};
 }
+
+template Snapshot summarise(const StatisticsHeader&, const ScaleFactors&, EntryList,
+                            const SummaryConfig&) noexcept;
+template Snapshot summarise(const StatisticsHeader&, const ScaleFactors&, GroupedList,
+                            const SummaryConfig&) noexcept;
+template Level summarise_level(const StatisticsHeader&, const ScaleFactors&, EntryList,
+                               const SummaryConfig&) noexcept;
+template Level summarise_level(const StatisticsHeader&, const ScaleFactors&, GroupedList,
+                               const SummaryConfig&) noexcept;
 
 Snapshot summarise(const Statistics& statistics, const SummaryConfig& config) noexcept {
   std::array<const ScaleFactors*, kEntries> entries{};

@@ -10,15 +10,17 @@ struct SummaryConfig {
 };
 
 /// Everything that the statistics say: law, stiffness, curve, deviations, errors. Some
-/// milliseconds of work; not for the sample path.
+/// milliseconds of work; not for the sample path. Entries: EntryList or GroupedList.
+template <class Entries>
 [[nodiscard]] Snapshot summarise(const StatisticsHeader& header, const ScaleFactors& total,
-                                 EntryList entries, const SummaryConfig& config) noexcept;
+                                 Entries entries, const SummaryConfig& config) noexcept;
 [[nodiscard]] Snapshot summarise(const Statistics& statistics,
                                  const SummaryConfig& config) noexcept;
 
 /// The two of a snapshot's figures that a history needs, the same to the last bit, at a seventh of
 /// the work.
+template <class Entries>
 [[nodiscard]] Level summarise_level(const StatisticsHeader& header, const ScaleFactors& total,
-                                    EntryList entries, const SummaryConfig& config) noexcept;
+                                    Entries entries, const SummaryConfig& config) noexcept;
 
 }  // namespace dampline

@@ -16,38 +16,56 @@ DAMPLINE_WIDE void rotate(RowFactor& into, const GalerkinRow& row, int first) no
 }
 }  // namespace
 
-void merge_step(ScaleFactors& into, const ScaleFactors& from, int cursor) noexcept {
-  const auto scale = static_cast<std::size_t>(cursor / kRowColumns);
-  const int row = cursor % kRowColumns;
-  rotate(into.factor[scale], from.factor[scale].row(row), row);
-}
-
-void merge_counts(ScaleFactors& into, const ScaleFactors& from) noexcept {
-  for (std::size_t s = 0; s < kScales; ++s) into.rows[s] += from.rows[s];
-  into.blocks += from.blocks;
-}
-
-void merge_all(ScaleFactors& into, const ScaleFactors& from) noexcept {
-  for (std::size_t s = 0; s < kScales; ++s) into.factor[s].merge(from.factor[s]);
-  merge_counts(into, from);
-}
-
-BlockStore::BlockStore(const Config& config) noexcept : config_{config} {
-  // The ring covers the window, or five time constants.
-  const double covered = config.memory == Memory::kWindow       ? config.memory_blocks
-                         : config.memory == Memory::kForgetting ? 5.0 * config.memory_blocks
-                                                                : 0.0;
-  const double length = std::ceil(covered / static_cast<double>(kEntries));
-  blocks_per_entry_ = static_cast<std::uint32_t>(std::max(1.0, length));
-  if (config.memory == Memory::kWindow) {
-    limit_ = static_cast<std::size_t>(std::ceil(config.memory_blocks / blocks_per_entry_));
+int ScaleFactors::merge(const ScaleFactors& from, int part) noexcept {
+  const auto scale = static_cast<std::size_t>(part / kRowColumns);
+  if (blocks == 0) {  // nothing to merge with
+    factor[scale] = from.factor[scale];
+    return kRowColumns;
   }
+  const int row = part % kRowColumns;
+  rotate(factor[scale], from.factor[scale].row(row), row);
+  return 1;
+}
+
+void ScaleFactors::merge_counts(const ScaleFactors& from) noexcept {
+  for (std::size_t s = 0; s < kScales; ++s) rows[s] += from.rows[s];
+  blocks += from.blocks;
+}
+
+void ScaleFactors::merge(const ScaleFactors& from) noexcept {
+  for (std::size_t s = 0; s < kScales; ++s) factor[s].merge(from.factor[s]);
+  merge_counts(from);
+}
+
+double MemoryConfig::kept() const noexcept {
+  return memory == Memory::kForgetting ? std::exp(-1.0 / memory_blocks) : 1.0;
+}
+
+std::uint32_t MemoryConfig::blocks_per_entry(std::size_t most) const noexcept {
+  // The ring covers the window, or five time constants.
+  const double covered = memory == Memory::kWindow       ? memory_blocks
+                         : memory == Memory::kForgetting ? 5.0 * memory_blocks
+                                                         : 0.0;
+  return static_cast<std::uint32_t>(std::max(1.0, std::ceil(covered / static_cast<double>(most))));
+}
+
+BlockStore::BlockStore(const Config& config) noexcept
+    : config_{config}, entries_{entries_for(config)} {}
+
+BlockStore::Entries BlockStore::entries_for(const Config& config) noexcept {
+  const std::uint32_t blocks = config.blocks_per_entry(kEntries);
+  const std::size_t limit = config.memory == Memory::kWindow
+                                ? static_cast<std::size_t>(std::ceil(config.memory_blocks / blocks))
+                                : kEntries;
+  return Entries{config.memory == Memory::kInfinite ? Entries::WhenFull::kJoinNeighbours
+                                                    : Entries::WhenFull::kDropOldest,
+                 limit, blocks};
 }
 
 void BlockStore::absorb(std::int64_t block, std::size_t scale, const GalerkinRow& row) noexcept {
   Panel& panel = panels_[scale];
-  if (panel.count == kPanel || panel.slot != slot(block)) absorb_panel(scale);
-  panel.slot = slot(block);
+  if (panel.count == kPanel || panel.slot != Waiting::slot(block)) absorb_panel(scale);
+  panel.slot = Waiting::slot(block);
   panel.rows.set(panel.count++, row);
   open_[panel.slot].rows[scale] += 1.0;
 }
@@ -66,79 +84,50 @@ void BlockStore::absorb_panel(std::size_t scale) noexcept {
 
 double BlockStore::rows(std::int64_t block) const noexcept {
   double sum = 0.0;
-  for (const double n : open_[slot(block)].rows) sum += n;
+  for (const double n : open_[Waiting::slot(block)].rows) sum += n;
   return sum;
 }
 
 void BlockStore::close(std::int64_t block) noexcept {
-  if (rows(block) == 0.0 || pending_count_ == kSlots) return;
-  pending_[pending_count_++] = slot(block);
-  if (pending_count_ == 1) start();
+  if (rows(block) == 0.0 || waiting_.full()) return;
+  waiting_.push(Waiting::slot(block));
+  if (phase_ == Phase::kIdle) start();
 }
 
 void BlockStore::start() noexcept {
-  open_[pending_[0]].blocks = 1;
-  cursor_ = 0;
+  open_[waiting_.first()].blocks = 1;
   if (config_.memory == Memory::kForgetting) {
-    const double keep = std::exp(-1.0 / config_.memory_blocks);
+    const double keep = config_.kept();
     for (RowFactor& f : total_.factor) f.scale(std::sqrt(keep));
     for (double& n : total_.rows) n *= keep;
   }
-  const bool full = count_ == limit_ && entry(count_ - 1).blocks >= blocks_per_entry_;
-  phase_ = full && config_.memory == Memory::kInfinite ? Phase::kCompact : Phase::kIntoEntry;
-  if (phase_ == Phase::kIntoEntry) open_entry();
+  entries_.begin();
+  phase_ = Phase::kIntoEntry;
 }
 
-void BlockStore::open_entry() noexcept {
-  if (count_ > 0 && entry(count_ - 1).blocks < blocks_per_entry_) return;
-  if (count_ == limit_) {
-    head_ = (head_ + 1) % kEntries;  // the window slides: the oldest entry leaves
-  } else {
-    ++count_;
-  }
-  entry(count_ - 1).clear();
+bool BlockStore::into_total(const ScaleFactors& from) noexcept {
+  cursor_ += total_.merge(from, cursor_);
+  if (cursor_ < ScaleFactors::kParts) return false;
+  total_.merge_counts(from);
+  return true;
 }
 
 void BlockStore::advance() noexcept {
-  if (phase_ == Phase::kCompact) {
-    const int pair = cursor_ / kRowsOfBlock;
-    const auto target = static_cast<std::size_t>(pair);
-    const int step = cursor_ % kRowsOfBlock;
-    if (step == 0 && pair > 0) entry(target) = entry(2 * target);
-    merge_step(entry(target), entry(2 * target + 1), step);
-    if (step == kRowsOfBlock - 1) merge_counts(entry(target), entry(2 * target + 1));
-    if (++cursor_ < kPairs * kRowsOfBlock) return;
-    count_ = kEntries / 2;
-    blocks_per_entry_ *= 2;
-    open_entry();
-    phase_ = Phase::kIntoEntry;
-    cursor_ = 0;
-    return;
-  }
-  ScaleFactors& from = open_[pending_[0]];
-  ScaleFactors& into = phase_ == Phase::kIntoEntry ? entry(count_ - 1) : total_;
-  if (cursor_ % kRowColumns == 0) {  // one scale's last rows at a time, when its factor is needed
-    const auto scale = static_cast<std::size_t>(cursor_ / kRowColumns);
-    if (panels_[scale].slot == pending_[0]) absorb_panel(scale);
-  }
-  if (into.blocks == 0) {  // nothing to merge with
-    const auto scale = static_cast<std::size_t>(cursor_ / kRowColumns);
-    into.factor[scale] = from.factor[scale];
-    cursor_ += kRowColumns;
-  } else {
-    merge_step(into, from, cursor_++);
-  }
-  if (cursor_ < kRowsOfBlock) return;
-  cursor_ = 0;
-  merge_counts(into, from);
+  ScaleFactors& from = open_[waiting_.first()];
   if (phase_ == Phase::kIntoEntry) {
+    for (std::size_t s = 0; s < kScales; ++s)  // a scale's last rows when its factor is needed
+      if (panels_[s].slot == waiting_.first() && entries_.adds(static_cast<int>(s) * kRowColumns))
+        absorb_panel(s);
+    if (!entries_.step(from)) return;
+    cursor_ = 0;
     phase_ = Phase::kIntoTotal;
     return;
   }
+  if (!into_total(from)) return;
   from.clear();
   phase_ = Phase::kIdle;
-  std::shift_left(pending_.begin(), pending_.end(), 1);
-  if (--pending_count_ > 0) start();
+  waiting_.pop();
+  if (!waiting_.empty()) start();
 }
 
 void BlockStore::step() noexcept {
@@ -155,19 +144,18 @@ void BlockStore::total_to(ScaleFactors& out) const noexcept {
     return;
   }
   out.clear();
-  for (std::size_t i = 0; i < count_; ++i) merge_all(out, entries_[(head_ + i) % kEntries]);
+  for (std::size_t i = 0; i < entries_.size(); ++i) out.merge(entries_[i]);
 }
 
 std::size_t BlockStore::entries_to(std::array<const ScaleFactors*, kEntries>& out) const noexcept {
-  for (std::size_t i = 0; i < count_; ++i) out[i] = &entries_[(head_ + i) % kEntries];
-  return count_;
+  for (std::size_t i = 0; i < entries_.size(); ++i) out[i] = &entries_[i];
+  return entries_.size();
 }
 
 void BlockStore::clear() noexcept {
   finish();
   total_.clear();
-  count_ = 0;
-  head_ = 0;
+  entries_.clear();
 }
 
 }  // namespace dampline

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "dampline/estimate/statistics.hpp"
+#include "dampline/numeric/blocks.hpp"
 
 namespace dampline {
 
@@ -15,16 +16,23 @@ enum class Memory : std::uint8_t {
   kForgetting,  ///< exponential, by a time constant of moving time
 };
 
+struct MemoryConfig {
+  Memory memory{Memory::kInfinite};
+  double memory_blocks{0.0};  ///< window length or time constant
+  /// Of the total, when a block is added to it: nothing is forgotten at a standstill.
+  [[nodiscard]] double kept() const noexcept;
+  /// Entries so long that `most` of them cover what is remembered.
+  [[nodiscard]] std::uint32_t blocks_per_entry(std::size_t most) const noexcept;
+};
+
 /// Block factors on their way into the memory. Rows go into an open block; a closed block is merged
 /// into the total and into the newest entry a few factor rows per sample, so that no single sample
 /// pays for it. With infinite memory the entries double their length when all are full. Only blocks
 /// that hold rows count, so nothing is forgotten at a standstill.
 class BlockStore {
  public:
-  struct Config {
-    Memory memory{Memory::kInfinite};
-    double memory_blocks{0.0};  ///< window length or time constant
-  };
+  using Config = MemoryConfig;
+  static constexpr bool kHasWindow = true;
   /// Merges of one factor row each in one call of step().
   static constexpr int kMergesPerStep = 4;
 
@@ -47,54 +55,49 @@ class BlockStore {
   void total_to(ScaleFactors& out) const noexcept;
   /// Entries, oldest first; returns how many.
   std::size_t entries_to(std::array<const ScaleFactors*, kEntries>& out) const noexcept;
-  [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept { return blocks_per_entry_; }
-  [[nodiscard]] Memory memory() const noexcept { return config_.memory; }
+  [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept {
+    return entries_.blocks_per_entry();
+  }
+  /// use(total, entries), when all pending work is done.
+  template <class Use>
+  auto summed_up(const Use& use) noexcept {
+    finish();
+    ScaleFactors total;
+    total_to(total);
+    std::array<const ScaleFactors*, kEntries> entries{};
+    const std::size_t count = entries_to(entries);
+    return use(total, EntryList{entries}.first(count));
+  }
   /// Forgets everything that was merged; open blocks stay.
   void clear() noexcept;
 
  private:
-  enum class Phase : std::uint8_t { kIdle, kCompact, kIntoEntry, kIntoTotal };
+  enum class Phase : std::uint8_t { kIdle, kIntoEntry, kIntoTotal };
   static constexpr std::size_t kSlots = 3;
   static constexpr std::size_t kPanel = 8;
+  using Waiting = WaitingBlocks<kSlots>;
+  using Entries = BlockEntries<ScaleFactors, kEntries>;
   /// Rows of one scale and block that are not yet in the block's factor.
   struct Panel {
     RowFactor::Panel<kPanel> rows{};
     std::size_t count{0};
     std::size_t slot{0};
   };
-  static constexpr int kRowsOfBlock = static_cast<int>(kScales) * kRowColumns;
-  static constexpr int kPairs = static_cast<int>(kEntries / 2);
 
-  [[nodiscard]] static std::size_t slot(std::int64_t block) noexcept {
-    return static_cast<std::size_t>(block) % kSlots;
-  }
-  [[nodiscard]] ScaleFactors& entry(std::size_t i) noexcept {
-    return entries_[(head_ + i) % kEntries];
-  }
+  [[nodiscard]] static Entries entries_for(const Config& config) noexcept;
   void absorb_panel(std::size_t scale) noexcept;
   void start() noexcept;
-  void open_entry() noexcept;
   void advance() noexcept;
+  [[nodiscard]] bool into_total(const ScaleFactors& from) noexcept;
 
   Config config_;
-  std::uint32_t blocks_per_entry_{1};
-  std::size_t limit_{kEntries};  // entries in use at most
   std::array<ScaleFactors, kSlots> open_{};
   std::array<Panel, kScales> panels_{};
-  std::array<ScaleFactors, kEntries> entries_{};
-  std::size_t head_{0};
-  std::size_t count_{0};
+  Entries entries_;
   ScaleFactors total_;
   Phase phase_{Phase::kIdle};
-  std::array<std::size_t, kSlots> pending_{};  // slots to be merged, the first one now
-  std::size_t pending_count_{0};
-  int cursor_{0};  // factor row, then pair, within the phase
+  Waiting waiting_;
+  int cursor_{0};  // part of the block that goes into the total
 };
-
-/// Merges the factor rows of one block into another: step `cursor` of kScales * kRowColumns.
-void merge_step(ScaleFactors& into, const ScaleFactors& from, int cursor) noexcept;
-void merge_counts(ScaleFactors& into, const ScaleFactors& from) noexcept;
-/// into += from, whole.
-void merge_all(ScaleFactors& into, const ScaleFactors& from) noexcept;
 
 }  // namespace dampline

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "dampline/estimate/block_store.hpp"
 #include "dampline/numeric/blocks.hpp"
 
 namespace dampline {
@@ -12,7 +11,8 @@ namespace {
 /// Joins neighbouring entries two by two: half as many, twice as long.
 void halve(Statistics& statistics) noexcept {
   statistics.header.entry_count = static_cast<std::uint32_t>(
-      join_neighbours(statistics.entries, statistics.header.entry_count, merge_all));
+      join_neighbours(statistics.entries, statistics.header.entry_count,
+                      [](ScaleFactors& entry, const ScaleFactors& next) { entry.merge(next); }));
   statistics.header.blocks_per_entry *= 2;
 }
 
@@ -22,7 +22,7 @@ bool join(Statistics& into, const ScaleFactors& entry) noexcept {
   if (count == 0) return false;
   ScaleFactors& last = into.entries[count - 1];
   if (last.blocks + entry.blocks > into.header.blocks_per_entry) return false;
-  merge_all(last, entry);
+  last.merge(entry);
   return true;
 }
 
@@ -65,7 +65,7 @@ void add_counts(Counts& into, const Counts& from) noexcept {
 
 Result<std::uint32_t> merge(Statistics& into, const Statistics& from) noexcept {
   if (into.header.basis_hash != from.header.basis_hash) return Errc::kMismatch;
-  merge_all(into.total, from.total);
+  into.total.merge(from.total);
   while (into.header.blocks_per_entry < from.header.blocks_per_entry) halve(into);
   for (std::uint32_t i = 0; i < from.header.entry_count; ++i) append(into, from.entries[i]);
   add_velocity(into.header.velocity, from.header.velocity);

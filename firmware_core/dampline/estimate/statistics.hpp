@@ -22,6 +22,19 @@ struct ScaleFactors {
     rows.fill(0.0);
     blocks = 0;
   }
+  /// As BlockEntries gathers them: one row of one factor; a whole factor where this one is empty.
+  static constexpr int kParts = static_cast<int>(kScales) * kRowColumns;
+  int merge(const ScaleFactors& from, int part) noexcept;
+  void merge_counts(const ScaleFactors& from) noexcept;
+  void merge(const ScaleFactors& from) noexcept;
+  void copy(const ScaleFactors& from, int part) noexcept {
+    const auto scale = static_cast<std::size_t>(part / kRowColumns);
+    if (part % kRowColumns == 0) factor[scale] = from.factor[scale];
+  }
+  void copy_counts(const ScaleFactors& from) noexcept {
+    rows = from.rows;
+    blocks = from.blocks;
+  }
 };
 
 /// Velocity of the samples that moved: support of the curve, and what the verdicts need.

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "dampline/basis/columns.hpp"
+#include "dampline/estimate/grouped_store.hpp"
 #include "dampline/estimate/statistics.hpp"
 #include "dampline/numeric/cholesky.hpp"
 
@@ -33,7 +34,8 @@ class MappedColumns {
   }
 
   /// map' times row `i` of a factor.
-  [[nodiscard]] Row row_of(const RowFactor& factor, int i) const noexcept {
+  template <class Factor>
+  [[nodiscard]] Row row_of(const Factor& factor, int i) const noexcept {
     Row out;
     std::size_t part = 0;
     for (int j = 0; j <= Q; ++j) {
@@ -149,25 +151,63 @@ WeightedFit<Q> weighted_fit(const ScaleFactors& factors, const ColumnMap<Q>& map
   return fit;
 }
 
+/// Every row of an entry's factors that a fit used, mapped, with its weight: visit(weight, row).
+template <int Q, class Visit>
+void for_each_row(const WeightedFit<Q>& fit, const ScaleFactors& entry,
+                  const MappedColumns<Q>& columns, const Visit& visit) noexcept {
+  for (std::size_t s = 0; s < kScales; ++s) {
+    if (!(fit.weight[s] > 0.0)) continue;
+    for (int i = 0; i < kRowColumns; ++i) visit(fit.weight[s], columns.row_of(entry.factor[s], i));
+  }
+}
+/// Grouped rows were weighed before.
+template <int Q, class Visit>
+void for_each_row(const WeightedFit<Q>& fit, const GroupedFactors& entry,
+                  const MappedColumns<Q>& columns, const Visit& visit) noexcept {
+  for (std::size_t s = 0; s < kScales; s += kScales - 1) {  // the first of each group
+    if (!(fit.weight[s] > 0.0)) continue;
+    for (int i = 0; i < kRowColumns; ++i) visit(1.0, columns.row_of(entry.factor[group_of(s)], i));
+  }
+}
+
+/// X'(t - X theta) of an entry.
+template <int Q, class Entry>
+typename WeightedFit<Q>::Vector score_of(const WeightedFit<Q>& fit, const Entry& entry,
+                                         const MappedColumns<Q>& columns) noexcept {
+  typename WeightedFit<Q>::Vector score = WeightedFit<Q>::Vector::Zero();
+  for_each_row(fit, entry, columns, [&](double weight, const auto& row) {
+    score += weight * (row[Q] - row.template head<Q>().dot(fit.theta)) * row.template head<Q>();
+  });
+  return score;
+}
+
 /// Covariance of a fit from the scores of the entries.
 template <int Q>
 Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, EntryList entries,
-                                             const ColumnMap<Q>& map) noexcept {
+                                             const ColumnMap<Q>& map,
+                                             const Information<Q + 1>& /*prior*/ = {}) noexcept {
   const MappedColumns<Q> columns{map};
   ScoreScatter<Q> scatter;
-  for (const ScaleFactors* entry : entries) {
-    Eigen::Matrix<double, Q, 1> score = Eigen::Matrix<double, Q, 1>::Zero();
-    for (std::size_t s = 0; s < kScales; ++s) {
-      if (!(fit.weight[s] > 0.0)) continue;
-      for (int i = 0; i < kRowColumns; ++i) {
-        const Eigen::Matrix<double, Q + 1, 1> row = columns.row_of(entry->factor[s], i);
-        score += fit.weight[s] * (row[Q] - row.template head<Q>().dot(fit.theta)) *
-                 row.template head<Q>();
-      }
-    }
-    scatter.add(score);
-  }
+  for (const ScaleFactors* entry : entries) scatter.add(score_of(fit, *entry, columns));
   return scatter.covariance(fit.inverse);
+}
+/// The same of grouped entries: their weights are not the fit's to the last digit, so that the
+/// information is theirs too.
+template <int Q>
+Eigen::Matrix<double, Q, Q> score_covariance(const WeightedFit<Q>& fit, GroupedList entries,
+                                             const ColumnMap<Q>& map,
+                                             const Information<Q + 1>& prior = {}) noexcept {
+  const MappedColumns<Q> columns{map};
+  ScoreScatter<Q> scatter;
+  Information<Q + 1> sum = prior;
+  for (const GroupedFactors* entry : entries) {
+    scatter.add(score_of(fit, *entry, columns));
+    for_each_row(fit, *entry, columns,
+                 [&sum](double /*weight*/, const auto& row) { sum.absorb(row); });
+  }
+  typename WeightedFit<Q>::Vector theta;
+  if (!sum.solve(theta)) return fit.inverse;
+  return scatter.covariance(sum.inverse());
 }
 
 /// Factor on a standard deviation that came from the scatter of `count` blocks: few blocks scatter
@@ -178,18 +218,13 @@ inline double short_record_factor(double count) noexcept {
 }
 
 /// Weighted normal equations of all scales, [X t]'[X t].
-template <int Q>
-Eigen::Matrix<double, Q + 1, Q + 1> weighted_gram(const WeightedFit<Q>& fit,
-                                                  const ScaleFactors& factors,
+template <int Q, class Entry>
+Eigen::Matrix<double, Q + 1, Q + 1> weighted_gram(const WeightedFit<Q>& fit, const Entry& entry,
                                                   const MappedColumns<Q>& columns) noexcept {
   Eigen::Matrix<double, Q + 1, Q + 1> gram = Eigen::Matrix<double, Q + 1, Q + 1>::Zero();
-  for (std::size_t s = 0; s < kScales; ++s) {
-    if (!(fit.weight[s] > 0.0)) continue;
-    for (int i = 0; i < kRowColumns; ++i) {
-      const Eigen::Matrix<double, Q + 1, 1> row = columns.row_of(factors.factor[s], i);
-      gram += fit.weight[s] * row.lazyProduct(row.transpose());
-    }
-  }
+  for_each_row(fit, entry, columns, [&gram](double weight, const auto& row) {
+    gram += weight * row.lazyProduct(row.transpose());
+  });
   return gram;
 }
 
@@ -233,8 +268,8 @@ HeldOut held_out(std::size_t count, const Of& of) noexcept {
 }
 
 /// NMSE of the entries of a fit, held out.
-template <int Q, std::size_t Folds>
-double held_out_nmse_of(const WeightedFit<Q>& fit, EntryList entries,
+template <int Q, std::size_t Folds, class Entries>
+double held_out_nmse_of(const WeightedFit<Q>& fit, Entries entries,
                         const ColumnMap<Q>& map) noexcept {
   const MappedColumns<Q> columns{map};
   const HeldOut out = held_out<Q, Folds>(

@@ -224,14 +224,8 @@ class Information {
     for (int j = 0; j < count; j += kVector) vector(j);
     four(upper + count).numbers = beyond;
   }
-  using Four [[gnu::vector_size(kVector * sizeof(Scalar))]] = Scalar;
-  /// Four neighbours in memory, aligned as one of them is.
-  struct [[gnu::packed, gnu::aligned(alignof(Scalar)), gnu::may_alias]] FourInMemory {
-    Four numbers;
-  };
-  static FourInMemory& four(Scalar* numbers) noexcept {
-    return *reinterpret_cast<FourInMemory*>(numbers);
-  }
+  using Four = typename FourInMemory<Scalar>::Numbers;
+  static FourInMemory<Scalar>& four(Scalar* numbers) noexcept { return wide(numbers); }
   static constexpr std::size_t place(int j) noexcept { return static_cast<std::size_t>(j); }
   static constexpr std::size_t offset(int i) noexcept {
     return static_cast<std::size_t>(i * Columns - i * (i - 1) / 2);

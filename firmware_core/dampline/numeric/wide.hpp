@@ -17,19 +17,22 @@
 
 namespace dampline {
 
-/// Four numbers that go through one instruction where the processor has one for so many, else
-/// through two or four; lane by lane the same bits.
-using Wide = double __attribute__((vector_size(32)));
-/// Four neighbours in memory, aligned as one of them is.
-struct [[gnu::packed, gnu::aligned(alignof(double)), gnu::may_alias]] WideInMemory {
-  Wide numbers;
+/// Four neighbours in memory, aligned as one of them is. As numbers they go through one instruction
+/// where the processor has one for so many, else through two or four; lane by lane the same bits.
+template <class Number>
+struct [[gnu::packed, gnu::aligned(alignof(Number)), gnu::may_alias]] FourInMemory {
+  using Numbers [[gnu::vector_size(4 * sizeof(Number))]] = Number;
+  Numbers numbers;
 };
+using Wide = FourInMemory<double>::Numbers;
 
-inline const WideInMemory& wide(const double* first) noexcept {
-  return *reinterpret_cast<const WideInMemory*>(first);
+template <class Number>
+inline const FourInMemory<Number>& wide(const Number* first) noexcept {
+  return *reinterpret_cast<const FourInMemory<Number>*>(first);
 }
-inline WideInMemory& wide(double* first) noexcept {
-  return *reinterpret_cast<WideInMemory*>(first);
+template <class Number>
+inline FourInMemory<Number>& wide(Number* first) noexcept {
+  return *reinterpret_cast<FourInMemory<Number>*>(first);
 }
 
 /// Sum of a[i] b[i]: number i goes to lane i % 8, then the lanes are added, and the last count % 4

@@ -15,7 +15,8 @@ constexpr double kSteepSteps = 6.0;
 constexpr double kSameValue = 1e-9;  // rounding of a value that was printed
 }  // namespace
 
-Result<ScreenConfig> SampleScreen::check(const ScreenConfig& config) noexcept {
+template <std::size_t kMost>
+Result<ScreenConfig> BasicSampleScreen<kMost>::check(const ScreenConfig& config) noexcept {
   const double window = config.sample_rate_hz * config.stuck_s;
   if (!(window >= 2.0 && window <= static_cast<double>(kCapacity))) return Errc::kInvalidConfig;
   if (!(config.moved_mps2 > 0.0)) return Errc::kInvalidConfig;
@@ -25,19 +26,24 @@ Result<ScreenConfig> SampleScreen::check(const ScreenConfig& config) noexcept {
   return config;
 }
 
-SampleScreen::SampleScreen(const ScreenConfig& config) noexcept
+template <std::size_t kMost>
+BasicSampleScreen<kMost>::BasicSampleScreen(const ScreenConfig& config) noexcept
     : window_{static_cast<std::size_t>(std::llround(config.sample_rate_hz * config.stuck_s))},
       config_{config} {}
 
-SampleScreen::Held& SampleScreen::held(std::size_t age) noexcept {
+template <std::size_t kMost>
+typename BasicSampleScreen<kMost>::Held& BasicSampleScreen<kMost>::held(std::size_t age) noexcept {
   return ring_[(newest_ + kCapacity - age) % kCapacity];
 }
 
-const SampleScreen::Held& SampleScreen::held(std::size_t age) const noexcept {
+template <std::size_t kMost>
+const typename BasicSampleScreen<kMost>::Held& BasicSampleScreen<kMost>::held(
+    std::size_t age) const noexcept {
   return ring_[(newest_ + kCapacity - age) % kCapacity];
 }
 
-DAMPLINE_WIDE bool SampleScreen::push(const Sample& sample, Screened& out) noexcept {
+template <std::size_t kMost>
+DAMPLINE_WIDE bool BasicSampleScreen<kMost>::push(const Sample& sample, Screened& out) noexcept {
   newest_ = (newest_ + 1) % kCapacity;
   ring_[newest_].sample = sample;
   ring_[newest_].verdict = {};
@@ -60,13 +66,15 @@ DAMPLINE_WIDE bool SampleScreen::push(const Sample& sample, Screened& out) noexc
   return true;
 }
 
-bool SampleScreen::drain(Screened& out) noexcept {
+template <std::size_t kMost>
+bool BasicSampleScreen<kMost>::drain(Screened& out) noexcept {
   if (count_ == 0) return false;
   take_oldest(out);
   return true;
 }
 
-void SampleScreen::take_oldest(Screened& out) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::take_oldest(Screened& out) noexcept {
   const Held& oldest = held(count_ - 1);
   out = Screened{oldest.sample, Verdict::kGood, 0};
   out.verdict = *std::max_element(oldest.verdict.begin(), oldest.verdict.end());
@@ -78,7 +86,9 @@ void SampleScreen::take_oldest(Screened& out) noexcept {
   --count_;
 }
 
-void SampleScreen::mark(std::size_t channel, std::int64_t samples, Verdict verdict) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::mark(std::size_t channel, std::int64_t samples,
+                                    Verdict verdict) noexcept {
   const std::size_t reach = std::min(static_cast<std::size_t>(samples), count_);
   for (std::size_t age = 0; age < reach; ++age) {
     Verdict& known = held(age).verdict[channel];
@@ -87,7 +97,9 @@ void SampleScreen::mark(std::size_t channel, std::int64_t samples, Verdict verdi
 }
 
 // Lost samples do not end a run: a stuck channel stays stuck. A pause does.
-void SampleScreen::follow(Run& run, double value, std::int64_t tick, bool paused) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::follow(Run& run, double value, std::int64_t tick,
+                                      bool paused) noexcept {
   if (run.samples > 0 && !paused && value == run.value) {
     ++run.samples;
     return;
@@ -98,7 +110,8 @@ void SampleScreen::follow(Run& run, double value, std::int64_t tick, bool paused
   run.stuck = false;
 }
 
-void SampleScreen::follow_extremes(Run& run, double value) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::follow_extremes(Run& run, double value) noexcept {
   if (!std::isfinite(value)) return;
   const double size = std::abs(value - run.value);
   if (run.count > 0.0 && size > kSameValue && (run.step_mps2 == 0.0 || size < run.step_mps2))
@@ -117,11 +130,13 @@ void SampleScreen::follow_extremes(Run& run, double value) noexcept {
   }
 }
 
-bool SampleScreen::holds(std::size_t channel, std::int64_t tick) const noexcept {
+template <std::size_t kMost>
+bool BasicSampleScreen<kMost>::holds(std::size_t channel, std::int64_t tick) const noexcept {
   return tick - runs_[channel].first_tick + 1 >= static_cast<std::int64_t>(window_);
 }
 
-void SampleScreen::judge_stuck(std::size_t channel) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::judge_stuck(std::size_t channel) noexcept {
   Run& run = runs_[channel];
   if (run.stuck) {
     mark(channel, 1, Verdict::kStuck);
@@ -136,7 +151,8 @@ void SampleScreen::judge_stuck(std::size_t channel) noexcept {
   }
 }
 
-bool SampleScreen::moved(std::size_t channel) const noexcept {
+template <std::size_t kMost>
+bool BasicSampleScreen<kMost>::moved(std::size_t channel) const noexcept {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   const std::int64_t first_tick = held(0).sample.tick - static_cast<std::int64_t>(window_) + 1;
@@ -152,7 +168,8 @@ bool SampleScreen::moved(std::size_t channel) const noexcept {
 
 /// The top of a parabola that a coarse step makes equal for n samples is three steps lower n / 2
 /// samples before them; one that is cut off comes from farther below.
-bool SampleScreen::rises_steeply(std::size_t channel) const noexcept {
+template <std::size_t kMost>
+bool BasicSampleScreen<kMost>::rises_steeply(std::size_t channel) const noexcept {
   const Run& run = runs_[channel];
   const auto before = static_cast<std::size_t>(run.samples + (run.samples + 1) / 2 - 1);
   if (before >= count_) return true;
@@ -161,7 +178,8 @@ bool SampleScreen::rises_steeply(std::size_t channel) const noexcept {
   return std::abs(run.value - held(before).sample.accel_mps2[channel]) > kSteepSteps * step;
 }
 
-void SampleScreen::judge_flat_top(std::size_t channel) noexcept {
+template <std::size_t kMost>
+void BasicSampleScreen<kMost>::judge_flat_top(std::size_t channel) noexcept {
   Run& run = runs_[channel];
   if (run.count < static_cast<double>(window_)) return;
   const bool top = run.value == run.highest;
@@ -179,5 +197,8 @@ void SampleScreen::judge_flat_top(std::size_t channel) noexcept {
   flat = true;
   mark(channel, run.samples, Verdict::kSaturated);
 }
+
+template class BasicSampleScreen<256>;
+template class BasicSampleScreen<150>;
 
 }  // namespace dampline

@@ -32,15 +32,16 @@ struct ScreenConfig {
 /// Screens samples before anything uses them. They come out stuck_s later, because it takes that
 /// long to know that a channel is stuck, and the verdict must reach back to the first stuck sample.
 /// A sensor that is quiet because the car stands is not stuck: then no other channel moves.
-class SampleScreen {
+template <std::size_t kMost>
+class BasicSampleScreen {
  public:
-  static constexpr std::size_t kCapacity = 256;
-  static constexpr std::int64_t kFlatTop = 4;  ///< equal values in a row at the extreme
+  static constexpr std::size_t kCapacity = kMost;  ///< samples that may be held
+  static constexpr std::int64_t kFlatTop = 4;      ///< equal values in a row at the extreme
 
   /// kInvalidConfig unless 2 <= sample_rate_hz * stuck_s <= kCapacity and moved_mps2 > 0.
   [[nodiscard]] static Result<ScreenConfig> check(const ScreenConfig& config) noexcept;
   /// Precondition: check(config).ok().
-  explicit SampleScreen(const ScreenConfig& config) noexcept;
+  explicit BasicSampleScreen(const ScreenConfig& config) noexcept;
 
   /// True when it wrote the sample that is now old enough.
   bool push(const Sample& sample, Screened& out) noexcept;
@@ -93,5 +94,7 @@ class SampleScreen {
   std::size_t newest_{0};  // slot of the newest
   std::size_t count_{0};
 };
+
+using SampleScreen = BasicSampleScreen<256>;
 
 }  // namespace dampline

@@ -12,37 +12,43 @@ namespace {
 constexpr auto kLanes = static_cast<std::size_t>(LawColumns::kLanes);
 
 /// sum += weight[i] (left[i] + right[-i]), lane by lane.
+template <class Number>
 DAMPLINE_WIDE void add_pairs(float* __restrict sum, const float* __restrict weight,
-                             const float* __restrict left, const float* __restrict right,
+                             const Number* __restrict left, const Number* __restrict right,
                              std::size_t count) noexcept {
   std::array<float, kLanes> own{};
   for (std::size_t l = 0; l < kLanes; ++l) own[l] = sum[l];
   for (; count > 0; --count, ++weight, left += kLanes, right -= kLanes)
-    for (std::size_t l = 0; l < kLanes; ++l) own[l] += *weight * (left[l] + right[l]);
+    for (std::size_t l = 0; l < kLanes; ++l)
+      own[l] += *weight * static_cast<float>(left[l] + right[l]);
   for (std::size_t l = 0; l < kLanes; ++l) sum[l] = own[l];
 }
 
 /// Sums in four lanes: sample i goes to lane i % 4.
-using Lanes = std::array<double, 4>;
+template <class Number>
 struct LinearSums {
+  using Lanes = std::array<Number, 4>;
   Lanes target{};
   Lanes stiffness{};
   Lanes viscous{};
 };
+template <class Number>
 struct LinearWeights {
-  const double* psi;
-  const double* psi1;
-  const double* double_integral;
+  const Number* psi;
+  const Number* psi1;
+  const Number* double_integral;
 };
 
-DAMPLINE_WIDE void add_linear(LinearSums& sums, const LinearWeights& weights, const double* frame,
-                              const double* relative, std::size_t count) noexcept {
-  Wide target = wide(sums.target.data()).numbers;
-  Wide stiffness = wide(sums.stiffness.data()).numbers;
-  Wide viscous = wide(sums.viscous.data()).numbers;
+template <class Number>
+DAMPLINE_WIDE void add_linear(LinearSums<Number>& sums, const LinearWeights<Number>& weights,
+                              const Number* frame, const Number* relative,
+                              std::size_t count) noexcept {
+  auto target = wide(sums.target.data()).numbers;
+  auto stiffness = wide(sums.stiffness.data()).numbers;
+  auto viscous = wide(sums.viscous.data()).numbers;
   std::size_t i = 0;
   for (; i + 4 <= count; i += 4) {
-    const Wide r = wide(relative + i).numbers;
+    const auto r = wide(relative + i).numbers;
     target += wide(weights.psi + i).numbers * wide(frame + i).numbers;
     stiffness += wide(weights.double_integral + i).numbers * r;
     viscous += wide(weights.psi1 + i).numbers * r;
@@ -57,7 +63,10 @@ DAMPLINE_WIDE void add_linear(LinearSums& sums, const LinearWeights& weights, co
   }
 }
 
-double sum_of(const Lanes& lanes) noexcept { return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]); }
+template <class Number>
+double sum_of(const std::array<Number, 4>& lanes) noexcept {
+  return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
+}
 
 }  // namespace
 
@@ -87,14 +96,17 @@ DAMPLINE_WIDE LawAverage::Lanes LawAverage::update(const LawColumns& law, double
   return average;
 }
 
-GalerkinRow RowBuilder::row(std::size_t scale, std::int64_t n) const noexcept {
+template <class Keeps>
+GalerkinRow BasicRowBuilder<Keeps>::row(std::size_t scale, std::int64_t n) const noexcept {
   GalerkinRow row;
   row.head<LawColumns::kCount>() = LawColumns::values(law_columns(scale, n));
   row.tail<3>() = linear_columns(scale, n);
   return row;
 }
 
-LawColumns::Lanes RowBuilder::law_columns(std::size_t scale, std::int64_t n) const noexcept {
+template <class Keeps>
+LawColumns::Lanes BasicRowBuilder<Keeps>::law_columns(std::size_t scale,
+                                                      std::int64_t n) const noexcept {
   const int half = bank_.half(scale);
   const float* psi = bank_.half_psi(scale);
   std::size_t left = law(n - half);
@@ -108,28 +120,37 @@ LawColumns::Lanes RowBuilder::law_columns(std::size_t scale, std::int64_t n) con
     left = (left + stretch) % kLawRing;
     right = (right + kLawRing - stretch) % kLawRing;
   }
-  return sum + *psi * law_[left];
+  for (int l = 0; l < LawColumns::kLanes; ++l)
+    sum[l] = (sum[l] + *psi * static_cast<float>(law_[left][static_cast<std::size_t>(l)])) *
+             Ring::step(l);
+  return sum;
 }
 
-Eigen::Vector3d RowBuilder::linear_columns(std::size_t scale, std::int64_t n) const noexcept {
+template <class Keeps>
+Eigen::Vector3d BasicRowBuilder<Keeps>::linear_columns(std::size_t scale,
+                                                       std::int64_t n) const noexcept {
   const std::size_t taps = bank_.lumped_psi(scale).size();
-  const double* psi = bank_.lumped_psi(scale).data();
-  const double* psi1 = bank_.lumped_psi1(scale).data();
-  const double* double_integral = bank_.lumped_double_integral(scale).data();
-  LinearSums sums{};
+  const Number* psi = bank_.lumped_psi(scale).data();
+  const Number* psi1 = bank_.lumped_psi1(scale).data();
+  const Number* double_integral = bank_.lumped_double_integral(scale).data();
+  LinearSums<Number> sums{};
   std::size_t at = raw(n - bank_.half(scale) - 1);
   for (std::size_t first = 0; first < taps; at = 0) {
     const std::size_t stretch = std::min(taps - first, kRawRing - at);
-    add_linear(sums, {psi + first, psi1 + first, double_integral + first}, &frame_mps2_[at],
-               &relative_mps2_[at], stretch);
+    add_linear<Number>(sums, {psi + first, psi1 + first, double_integral + first}, &frame_mps2_[at],
+                       &relative_mps2_[at], stretch);
     first += stretch;
   }
   return {sum_of(sums.stiffness), -sum_of(sums.viscous), -sum_of(sums.target)};
 }
 
-double RowBuilder::still_share(std::size_t scale, std::int64_t n) const noexcept {
+template <class Keeps>
+double BasicRowBuilder<Keeps>::still_share(std::size_t scale, std::int64_t n) const noexcept {
   if (newest_still_ < n - bank_.half(scale)) return 0.0;
   return bank_.marked_share(scale, still_, law(n - bank_.half(scale)));
 }
+
+template class BasicRowBuilder<FullRows>;
+template class BasicRowBuilder<SmallRows>;
 
 }  // namespace dampline
