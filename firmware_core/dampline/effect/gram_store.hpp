@@ -7,6 +7,7 @@
 
 #include "dampline/basis/window_bank.hpp"
 #include "dampline/effect/columns.hpp"
+#include "dampline/numeric/blocks.hpp"
 
 namespace dampline::effect {
 
@@ -51,16 +52,33 @@ struct ScaleGrams {
     rows.fill(0.0);
     blocks = 0;
   }
+  /// As BlockEntries gathers them: a matrix at a time.
+  static constexpr int kParts = static_cast<int>(kScales);
+  int merge(const ScaleGrams& from, int part) noexcept {
+    gram[static_cast<std::size_t>(part)].add(from.gram[static_cast<std::size_t>(part)]);
+    return 1;
+  }
+  void merge_counts(const ScaleGrams& from) noexcept {
+    for (std::size_t s = 0; s < kScales; ++s) rows[s] += from.rows[s];
+    blocks += from.blocks;
+  }
+  void copy(const ScaleGrams& from, int part) noexcept {
+    gram[static_cast<std::size_t>(part)] = from.gram[static_cast<std::size_t>(part)];
+  }
+  void copy_counts(const ScaleGrams& from) noexcept {
+    rows = from.rows;
+    blocks = from.blocks;
+  }
 };
 
 inline constexpr std::size_t kEffectEntries = 40;
 
-/// Sums of blocks on their way into a fixed number of entries. When all are full, neighbours are
-/// joined two by two and entries become twice as long; the work is spread over the steps.
+/// Sums of blocks on their way into a fixed number of entries, whose neighbours join when all are
+/// full; the work is spread over the steps.
 class GramStore {
  public:
   void absorb(std::int64_t block, std::size_t scale, const Row& row) noexcept {
-    ScaleGrams& open = open_[slot(block)];
+    ScaleGrams& open = open_[Waiting::slot(block)];
     open.gram[scale].absorb(row);
     open.rows[scale] += 1.0;
   }
@@ -69,41 +87,33 @@ class GramStore {
   /// A bounded part of the pending work: one addition of a Gram matrix.
   void step() noexcept;
   void finish() noexcept {
-    while (phase_ != Phase::kIdle) step();
+    while (is_changing()) step();
   }
 
   /// Entries, oldest first.
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] std::size_t count() const noexcept { return entries_.size(); }
   [[nodiscard]] const ScaleGrams& entry(std::size_t i) const noexcept { return entries_[i]; }
-  [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept { return blocks_per_entry_; }
+  [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept {
+    return entries_.blocks_per_entry();
+  }
 
   /// For a copy that is made part by part: how often the entries have begun to change, whether they
   /// are changing now, and how many parts they have.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
-  [[nodiscard]] bool is_changing() const noexcept { return phase_ != Phase::kIdle; }
-  [[nodiscard]] std::size_t parts() const noexcept { return count_ * kScales; }
+  [[nodiscard]] bool is_changing() const noexcept { return !waiting_.empty(); }
+  [[nodiscard]] std::size_t parts() const noexcept { return count() * kScales; }
   /// One matrix of another store's entries, with what belongs to it.
   void copy_part(const GramStore& from, std::size_t part) noexcept;
 
  private:
-  enum class Phase : std::uint8_t { kIdle, kCompact, kMerge };
   static constexpr std::size_t kSlots = 3;
-  [[nodiscard]] static std::size_t slot(std::int64_t block) noexcept {
-    return static_cast<std::size_t>(block) % kSlots;
-  }
+  using Waiting = WaitingBlocks<kSlots>;
   void start() noexcept;
-  void compact() noexcept;
-  void merge() noexcept;
 
-  std::uint32_t blocks_per_entry_{1};
   std::array<ScaleGrams, kSlots> open_{};
-  std::array<ScaleGrams, kEffectEntries> entries_{};
-  std::size_t count_{0};
+  BlockEntries<ScaleGrams, kEffectEntries> entries_{};
   std::uint64_t revision_{0};
-  Phase phase_{Phase::kIdle};
-  std::size_t cursor_{0};
-  std::array<std::size_t, kSlots> pending_{};
-  std::size_t pending_count_{0};
+  Waiting waiting_;
 };
 
 /// A copy of a store's entries beside its updates, one matrix a step, so that no sample pays for
