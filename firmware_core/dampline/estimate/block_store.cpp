@@ -138,13 +138,16 @@ void BlockStore::finish() noexcept {
   while (phase_ != Phase::kIdle) advance();
 }
 
-void BlockStore::total_to(ScaleFactors& out) const noexcept {
-  if (config_.memory != Memory::kWindow) {
-    out = total_;
-    return;
-  }
+void BlockStore::merge_entries(ScaleFactors& out) const noexcept {
   out.clear();
   for (std::size_t i = 0; i < entries_.size(); ++i) out.merge(entries_[i]);
+}
+
+void BlockStore::total_to(ScaleFactors& out) const noexcept {
+  if (config_.memory == Memory::kWindow)
+    merge_entries(out);
+  else
+    out = total_;
 }
 
 std::size_t BlockStore::entries_to(std::array<const ScaleFactors*, kEntries>& out) const noexcept {

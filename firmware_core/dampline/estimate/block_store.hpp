@@ -58,15 +58,15 @@ class BlockStore {
   [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept {
     return entries_.blocks_per_entry();
   }
-  /// use(total, entries), when all pending work is done.
+  /// use(total, entries), when all pending work is done. A window's total is made where the others
+  /// gather theirs: it is 9 KiB, too much for a stack.
   template <class Use>
   auto summed_up(const Use& use) noexcept {
     finish();
-    ScaleFactors total;
-    total_to(total);
+    if (config_.memory == Memory::kWindow) merge_entries(total_);
     std::array<const ScaleFactors*, kEntries> entries{};
     const std::size_t count = entries_to(entries);
-    return use(total, EntryList{entries}.first(count));
+    return use(total_, EntryList{entries}.first(count));
   }
   /// Forgets everything that was merged; open blocks stay.
   void clear() noexcept;
@@ -86,6 +86,7 @@ class BlockStore {
 
   [[nodiscard]] static Entries entries_for(const Config& config) noexcept;
   void absorb_panel(std::size_t scale) noexcept;
+  void merge_entries(ScaleFactors& out) const noexcept;
   void start() noexcept;
   void advance() noexcept;
   [[nodiscard]] bool into_total(const ScaleFactors& from) noexcept;

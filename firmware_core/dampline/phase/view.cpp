@@ -102,7 +102,7 @@ PhaseView::PhaseView(const PhaseViewConfig& config) noexcept
       velocity_over_deflection_{plane(Ranges{config}.deflection, Ranges{config}.velocity)},
       accel_over_deflection_{plane(Ranges{config}.deflection, Ranges{config}.accel)},
       accel_over_velocity_{plane(Ranges{config}.velocity, Ranges{config}.accel)},
-      meter_{Meter::make(1.0 / config.sample_rate_hz, decimation(config.sample_rate_hz)).value()},
+      meter_{1.0 / config.sample_rate_hz, decimation(config.sample_rate_hz)},
       stroboscope_{stroboscope(1.0, 0.0, 1.0 / config.sample_rate_hz)},
       until_look_{static_cast<std::uint64_t>(kLookEveryS * config.sample_rate_hz)} {
   if (config_.known_period_s > 0.0) start_sections(config_.known_period_s);
