@@ -53,6 +53,7 @@ class PeriodMeter {
     if (!(step_s > 0.0) || !std::isfinite(step_s) || decimation < 1) return Errc::kInvalidConfig;
     return PeriodMeter{step_s, decimation};
   }
+  PeriodMeter() noexcept = default;  ///< of no signal, as Result holds one beside an error
   /// The same in place, for what make() takes: a meter is some 16 KiB.
   PeriodMeter(double step_s, int decimation) noexcept
       : lag_s_{step_s * decimation}, decimation_{decimation} {}
