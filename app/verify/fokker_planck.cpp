@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/error.hpp"
 #include "app/verify/fokker_planck_cases.hpp"
@@ -17,64 +18,74 @@ const char* standing(const FokkerPlanckFigure& figure) {
   return figure.met ? "met" : "MISSED";
 }
 
-void print_figures(const FokkerPlanckCases& cases, bool markdown) {
-  if (markdown) fmt::print("| figure | published | computed | | |\n|--|--|--|--|--|\n");
+std::string figures_text(const FokkerPlanckCases& cases, bool markdown) {
+  std::string out;
+  if (markdown) out += "| figure | published | computed | | |\n|--|--|--|--|--|\n";
   for (const FokkerPlanckFigure& f : cases.figures) {
-    if (markdown) {
-      fmt::print("| {} | {} | {} | {} | {} |\n", markdown_cell(f.quantity), f.published, f.computed,
-                 standing(f), markdown_cell(f.remark));
-    } else {
-      fmt::print("{:<62} published {:>18}   computed {:>20}  {}\n    {}\n", f.quantity, f.published,
-                 f.computed, standing(f), f.remark);
-    }
+    out += markdown ? fmt::format("| {} | {} | {} | {} | {} |\n", markdown_cell(f.quantity),
+                                  f.published, f.computed, standing(f), markdown_cell(f.remark))
+                    : fmt::format("{:<62} published {:>18}   computed {:>20}  {}\n    {}\n",
+                                  f.quantity, f.published, f.computed, standing(f), f.remark);
   }
+  return out;
 }
 
-/// Interval, slope, force, as the publication's tables; slopes and forces with the region around
-/// v = 0 left out, and forces as published.
-void print_table(const PaperTable& table, bool markdown) {
-  fmt::print("\n{}Table {}: {}\n", markdown ? "### " : "", table.name, table.caption);
-  if (markdown) {
-    fmt::print(
-        "\n| interval, m/s | slope, N s/m | force, N | force with v = 0 left in, N |\n"
-        "|--|--|--|--|\n");
-  } else {
-    fmt::print("{:>22} {:>14} {:>12} {:>28}\n", "interval, m/s", "slope, N s/m", "force, N",
-               "force with v = 0 left in, N");
-  }
+std::string of_runs(const OverRuns& found) {
+  return fmt::format("{:.0f} +- {:.0f}", found.mean, found.std);
+}
+
+/// "+0.00290 ... +0.00580", or what line 11 is.
+std::string interval_of(const PaperLine& line) {
+  if (line.from_mps == line.to_mps) return "jump at v = 0";
+  return fmt::format("{:+.5f} ... {:+.5f}", line.from_mps, line.to_mps);
+}
+
+/// Line by line as the publication's tables; ours without the region around v = 0, whose segments
+/// have slope 0, and with it for one run.
+std::string table_text(const PaperTable& table, bool markdown) {
+  std::string out =
+      fmt::format("\n{}Table {}: {}\n", markdown ? "### " : "", table.name, table.caption);
+  const char* const format = markdown ? "| {} | {} | {} | {} | {} | {} | {} |\n"
+                                      : "{:>20} {:>12} {:>9}   {:>22} {:>16} {:>14} {:>12}\n";
+  const auto print = [&](const auto&... cells) {
+    out += fmt::format(fmt::runtime(format), cells...);
+  };
+  if (markdown) out += "\n";
+  print("published, m/s", "slope, N s/m", "force, N", "ours, m/s", "slope, N s/m", "force, N",
+        "v = 0 in, N");
+  if (markdown) out += "|--|--|--|--|--|--|--|\n";
   for (const std::size_t side : {std::size_t{1}, std::size_t{0}}) {
-    const double sign = side == 1 ? 1.0 : -1.0;
-    for (std::size_t i = 0; i < kPaperSegments; ++i) {
-      const PaperSegment& s = table.excluded.segments[side][i];
-      const double whole_n = table.half_mass_kg * table.whole.segments[side][i].alpha_mps2;
-      const std::string interval =
-          fmt::format("{:+.5f} ... {:+.5f}", sign * s.from_mps, sign * s.to_mps);
-      fmt::print(fmt::runtime(markdown ? "| {} | {:.0f} | {:.0f} | {:.0f} |\n"
-                                       : "{:>22} {:>14.0f} {:>12.0f} {:>28.0f}\n"),
-                 interval, sign * table.half_mass_kg * s.slope_ps,
-                 table.half_mass_kg * s.alpha_mps2, whole_n);
+    for (std::size_t i = 0; i < table.lines[side].size(); ++i) {
+      const PaperLine& line = table.lines[side][i];
+      const std::vector<std::string>& published = line.published->figures;
+      const double whole_mps2 = i < kPaperSegments ? table.whole.segments[side][i].alpha_mps2
+                                                   : table.whole.offset_mps2[side];
+      print(fmt::format("{} ... {}", published[0], published[1]), published[2],
+            fmt::format("{:.2f}", 1e3 * Printed{published[3]}.value), interval_of(line),
+            line.from_mps == line.to_mps ? "-" : of_runs(line.slope_nspm), of_runs(line.force_n),
+            fmt::format("{:.0f}", table.half_mass_kg * whole_mps2));
     }
   }
+  return out;
 }
 
 nlohmann::json json_of(const PaperTable& table) {
   nlohmann::json rows = nlohmann::json::array();
   for (const std::size_t side : {std::size_t{1}, std::size_t{0}}) {
-    const double sign = side == 1 ? 1.0 : -1.0;
-    for (std::size_t i = 0; i < kPaperSegments; ++i) {
-      const PaperSegment& s = table.excluded.segments[side][i];
-      rows.push_back(
-          {{"from_mps", sign * s.from_mps},
-           {"to_mps", sign * s.to_mps},
-           {"slope_nspm", sign * table.half_mass_kg * s.slope_ps},
-           {"force_n", table.half_mass_kg * s.alpha_mps2},
-           {"force_with_zero_n", table.half_mass_kg * table.whole.segments[side][i].alpha_mps2}});
+    for (const PaperLine& line : table.lines[side]) {
+      rows.push_back({{"from_mps", line.from_mps},
+                      {"to_mps", line.to_mps},
+                      {"slope_nspm", line.slope_nspm.mean},
+                      {"slope_std_nspm", line.slope_nspm.std},
+                      {"force_n", line.force_n.mean},
+                      {"force_std_n", line.force_n.std},
+                      {"printed", line.published->figures}});
     }
   }
   return {{"table", table.name}, {"caption", table.caption}, {"rows", rows}};
 }
 
-void print_json(const FokkerPlanckCases& cases, const VerifyOptions& options) {
+std::string json_text(const FokkerPlanckCases& cases, const VerifyOptions& options) {
   nlohmann::json out{{"subject", "fokker-planck"}};
   out["figures"] = nlohmann::json::array();
   for (const FokkerPlanckFigure& f : cases.figures) {
@@ -89,7 +100,7 @@ void print_json(const FokkerPlanckCases& cases, const VerifyOptions& options) {
   for (const PaperTable& table : cases.tables) {
     if (options.wants(table.name)) out["tables"].push_back(json_of(table));
   }
-  fmt::print("{}\n", out.dump(2));
+  return out.dump(2) + "\n";
 }
 
 }  // namespace
@@ -102,12 +113,12 @@ int verify_fokker_planck(const VerifyOptions& options) {
     }
   }
   const FokkerPlanckCases cases = fokker_planck_cases();
-  if (!options.quiet && options.json) {
-    print_json(cases, options);
-  } else if (!options.quiet) {
-    if (options.tables.empty()) print_figures(cases, options.markdown);
+  if (options.json) {
+    put(options, json_text(cases, options));
+  } else {
+    if (options.tables.empty()) put(options, figures_text(cases, options.markdown));
     for (const PaperTable& table : cases.tables) {
-      if (options.wants(table.name)) print_table(table, options.markdown);
+      if (options.wants(table.name)) put(options, table_text(table, options.markdown));
     }
   }
   const bool met = std::all_of(cases.figures.begin(), cases.figures.end(),

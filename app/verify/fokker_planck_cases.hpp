@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/printed/printed.hpp"
 #include "dampline/density/paper_form.hpp"
 
 namespace dampline::app {
@@ -19,13 +20,27 @@ struct FokkerPlanckFigure {
   bool met{true};        ///< ... keeps it
 };
 
-/// A table in the form of the publication's Tables 1 and 2.
+/// Mean over the runs of a load and their standard deviation.
+struct OverRuns {
+  double mean{0.0};
+  double std{0.0};
+};
+
+/// A line of the publication's tables beside this program's; the last is the jump at v = 0.
+struct PaperLine {
+  double from_mps{0.0}, to_mps{0.0};
+  OverRuns slope_nspm, force_n;
+  const PrintedRow* published{nullptr};
+};
+
+/// A table in the form of the publication's Tables 1 and 2. `whole` and `excluded` are of one run.
 struct PaperTable {
   std::string name;  ///< "1" laden, "2" empty
   std::string caption;
-  double half_mass_kg{0.0};  ///< force = half_mass_kg alpha
-  PaperForm whole;           ///< as published: v = 0 left in
-  PaperForm excluded;        ///< without the region around v = 0
+  double half_mass_kg{0.0};                       ///< force = half_mass_kg alpha
+  PaperForm whole;                                ///< as published: v = 0 left in
+  PaperForm excluded;                             ///< without the region around v = 0
+  std::array<std::vector<PaperLine>, 2> lines{};  ///< [0]: v < 0
 };
 
 struct FokkerPlanckCases {
@@ -33,7 +48,7 @@ struct FokkerPlanckCases {
   std::array<PaperTable, 2> tables;
 };
 
-/// Simulates and estimates; a few seconds.
+/// Simulates and estimates; some ten seconds.
 [[nodiscard]] FokkerPlanckCases fokker_planck_cases();
 
 }  // namespace dampline::app

@@ -2,11 +2,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "app/error.hpp"
 #include "app/program.hpp"
+#include "app/verify/page.hpp"
 #include "app/verify/subjects.hpp"
 
 namespace dampline::app {
@@ -37,13 +43,43 @@ std::string subject_help() {
   return text;
 }
 
-int verify(const std::string& name, const VerifyOptions& options) {
+const VerifySubject& subject_of(const std::string& name) {
   std::string known;
   for (const VerifySubject& subject : subjects()) {
-    if (name == subject.name) return subject.run(options);
+    if (name == subject.name) return subject;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", subject.name);
   }
   throw UsageError{fmt::format("verify: found '{}', expected one of: {}", name, known)};
+}
+
+/// One page of the subject, or of all of them, in the folder.
+int write_page(const std::string& name, VerifyOptions options,
+               const std::filesystem::path& folder) {
+  std::string body;
+  int code = 0;
+  options.markdown = true;
+  for (const VerifySubject& subject : subjects()) {
+    if (!name.empty() && &subject_of(name) != &subject) continue;
+    std::string markdown;
+    options.page = &markdown;
+    code = std::max(code, subject.run(options));
+    body += fmt::format("<h2>{}: {}</h2>\n", subject.name, subject.meaning);
+    body += html_of_markdown(markdown);
+  }
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path path = folder / "verify.html";
+  std::ofstream out{path};
+  out << whole_page("Published cases, recomputed", body);
+  out.close();
+  if (!out) throw RunError{fmt::format("verify --out: {} cannot be written", path.string())};
+  if (!options.quiet) fmt::print("{}\n", path.string());
+  return code;
+}
+
+int verify(const std::string& name, const VerifyOptions& options, const std::string& folder) {
+  if (!folder.empty()) return write_page(name, options, folder);
+  if (name.empty()) throw UsageError{"verify: found no SUBJECT, expected " + subject_help()};
+  return subject_of(name).run(options);
 }
 
 }  // namespace
@@ -56,7 +92,9 @@ int main(int argc, char** argv) {
   program.name("dampline verify");
   VerifyOptions options;
   std::string subject;
-  program.add_option("SUBJECT", subject, subject_help())->required();
+  program.add_option("SUBJECT", subject, subject_help());
+  std::string folder;
+  program.add_option("--out", folder, "write one page with all tables; without SUBJECT: of all");
   program.add_option("--table", options.tables, "only this table of the publication (repeatable)")
       ->expected(1)
       ->take_all();
@@ -64,6 +102,9 @@ int main(int argc, char** argv) {
   program.add_flag("--markdown", options.markdown, "print the figures as Markdown tables")
       ->excludes(json);
   program.add_flag("--quiet", options.quiet, "print nothing; the exit code tells");
-  return run(
-      program, [&] { return verify(subject, options); }, argc, argv);
+  const auto action = [&] {
+    std::signal(SIGPIPE, SIG_DFL);  // `verify ... | head` ends with its reader
+    return verify(subject, options, folder);
+  };
+  return run(program, action, argc, argv);
 }

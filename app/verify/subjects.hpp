@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -11,11 +13,21 @@ struct VerifyOptions {
   bool markdown{false};               ///< the figures as Markdown tables
   bool quiet{false};                  ///< nothing on standard output; the exit code tells
   std::vector<std::string> tables{};  ///< only these tables of the publication; empty: all
+  std::string* page{nullptr};         ///< takes the Markdown tables in place of standard output
 
   [[nodiscard]] bool wants(const std::string& table) const {
     return tables.empty() || std::find(tables.begin(), tables.end(), table) != tables.end();
   }
 };
+
+/// Prints the text, or adds it to the page.
+inline void put(const VerifyOptions& options, const std::string& text) {
+  if (options.page != nullptr) {
+    *options.page += text;
+  } else if (!options.quiet) {
+    fmt::print("{}", text);
+  }
+}
 
 // The published methods whose cases `dampline verify` recomputes and prints: 0 when every promised
 // figure is met, otherwise 1. They throw UsageError for a table that the publication does not have.
@@ -23,7 +35,7 @@ struct VerifyOptions {
 /// Kisilowski and Urbanski (1987).
 int verify_fokker_planck(const VerifyOptions& options);
 /// The resonances, sections and friction of the phase-mapping literature. Tables: resonance,
-/// planarity, linearity, friction.
+/// planarity, linearity, friction, figures.
 int verify_phase(const VerifyOptions& options);
 /// Ghanem and Romeo (2001).
 int verify_wavelet(const VerifyOptions& options);

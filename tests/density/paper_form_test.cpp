@@ -65,8 +65,10 @@ TEST(PaperForm, OfAnExactDensityIsExact) {
   ASSERT_TRUE(form.ok);
   EXPECT_NEAR(form.level_mps2() / (0.5 * kInputLevel / kLengthMps), 1.0, 5e-3);
   EXPECT_NEAR(form.offset(), 0.0, 1e-9);
-  EXPECT_EQ(form.segments[1].back().to_mps, 0.03);
-  for (const PaperSegment& s : form.segments[1]) {
+  EXPECT_EQ(form.used, 10U);
+  EXPECT_EQ(form.segments[1][form.used - 1].to_mps, 0.03);
+  for (std::size_t i = 0; i < form.used; ++i) {
+    const PaperSegment& s = form.segments[1][i];
     EXPECT_NEAR(s.alpha_mps2 / (0.5 * kInputLevel / kLengthMps), 1.0, 0.02);
   }
   // Smoothing by a Gaussian multiplies the tails by exp(h^2 / 2 l^2).

@@ -42,7 +42,10 @@ TEST(FokkerPlanckFigures, TablesHoldTogether) {
     for (std::size_t side = 0; side < 2; ++side) {
       double alpha = table.excluded.offset_mps2[side];
       double from_mps = 0.0;
-      for (const PaperSegment& s : table.excluded.segments[side]) {
+      ASSERT_EQ(table.excluded.used, 10U);  // k = 20 in all, page 386
+      ASSERT_EQ(table.lines[side].size(), 11U);
+      for (std::size_t i = 0; i < table.excluded.used; ++i) {
+        const PaperSegment& s = table.excluded.segments[side][i];
         EXPECT_EQ(s.from_mps, from_mps);
         from_mps = s.to_mps;
         alpha += s.slope_ps * (s.to_mps - s.from_mps);

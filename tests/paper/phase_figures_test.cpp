@@ -46,6 +46,18 @@ TEST(PhaseFigures, FrictionIsFoundFromNoisySections) {
   }
 }
 
+// At the publication's own inputs the mass sticks, unless it is started elsewhere.
+TEST(PhaseFigures, OwnInputsAreTriedAndSticking) {
+  const PublishedInputs inputs{{0.5, 1.0, 2.0}, {0.1}, {-0.1, 0.1}};
+  const FrictionStudy rest = study_published_inputs(inputs, 0.0, 0.0, 91);
+  EXPECT_EQ(rest.points, 0U);
+  EXPECT_EQ(rest.stuck_share(), 1.0);
+  EXPECT_EQ(rest.nodes, 0);
+  const FrictionStudy started = study_published_inputs(inputs, 3.0, 0.0, 91);
+  EXPECT_GT(started.nodes, 5);
+  EXPECT_LT(started.friction_error, 0.03);
+}
+
 TEST(PhaseFigures, SystemsAreDeclaredWhatTheyAre) {
   for (const std::uint64_t seed : {81U, 82U, 83U}) {
     EXPECT_EQ(study_planarity({.viscous_per_s = 0.3}, 0.01, seed).state, PlanarityState::kLinear);

@@ -42,7 +42,8 @@ const std::vector<Table>& tables() {
   static const std::vector<Table> all{{"resonance", [] { return resonance_rows(); }},
                                       {"planarity", [] { return planarity_rows(3); }},
                                       {"linearity", [] { return linearity_rows(kRuns); }},
-                                      {"friction", [] { return friction_rows(kRuns); }}};
+                                      {"friction", [] { return friction_rows(kRuns); }},
+                                      {"figures", [] { return figure_rows(); }}};
   return all;
 }
 
@@ -52,7 +53,8 @@ void check_names(const std::vector<std::string>& wanted) {
                                    [&](const Table& table) { return table.first == name; });
     if (!known)
       throw UsageError{fmt::format(
-          "verify phase --table: found '{}', expected resonance, planarity, linearity or friction",
+          "verify phase --table: found '{}', expected resonance, planarity, linearity, friction or "
+          "figures",
           name)};
   }
 }
@@ -117,12 +119,7 @@ int verify_phase(const VerifyOptions& options) {
     if (!options.wants(name)) continue;
     for (PhaseRow& row : make()) rows.push_back(std::move(row));
   }
-  if (!options.quiet) {
-    const std::string text = options.json       ? json_of(rows)
-                             : options.markdown ? markdown_of(rows)
-                                                : text_of(rows);
-    fmt::print("{}", text);
-  }
+  put(options, options.json ? json_of(rows) : options.markdown ? markdown_of(rows) : text_of(rows));
   return std::all_of(rows.begin(), rows.end(), [](const PhaseRow& row) { return row.met(); }) ? 0
                                                                                               : 1;
 }

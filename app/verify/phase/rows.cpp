@@ -7,14 +7,22 @@
 #include <cmath>
 
 #include "app/verify/phase/studies.hpp"
+#include "app/verify/printed/printed.hpp"
 #include "published/phase/scaling.hpp"
 
 namespace dampline::app {
 namespace {
 
-constexpr double kPublishedViscous = 0.69;
-constexpr double kPublishedCoulomb = 0.12;
-constexpr double kPublishedStructural = 0.16;
+/// As printed; the resonances of the three models.
+double published(const char* model) {
+  return printed_table(phase_mappings(), "resonance").at("omega", model).value;
+}
+
+/// A row of the publication's inputs: three values.
+std::vector<double> published_inputs(const char* row) {
+  const PrintedTable& printed = printed_table(phase_mappings(), "inputs");
+  return {printed.at(row, "1").value, printed.at(row, "2").value, printed.at(row, "3").value};
+}
 
 struct SweepCase {
   const char* what;
@@ -40,26 +48,30 @@ std::vector<SweepCase> sweep_cases() {
                        .steps_per_period = 1600};
   const double y_c = kStudyReversalM;
   return {
-      {"Coulomb friction", kPublishedCoulomb, {.friction_mps2 = 1.0}, {0.5, 1.0, 1.2, 1.5}, wide},
       {"Coulomb friction",
-       kPublishedCoulomb,
+       published("Coulomb"),
+       {.friction_mps2 = 1.0},
+       {0.5, 1.0, 1.2, 1.5},
+       wide},
+      {"Coulomb friction",
+       published("Coulomb"),
        {.friction_mps2 = 1.0},
        {1.005},
        near,
        "; the swing published is no larger than the friction; as it exceeds it by more, the peak "
        "moves from 0 to 1 rad/s, and half a per cent gives both published figures"},
       {"Coulomb friction, smoothed tanh(v / 0.5)",
-       kPublishedCoulomb,
+       published("Coulomb"),
        {.friction_mps2 = 1.0, .creep_mps = 0.5},
        {0.5, 1.0},
        low},
       {"structural friction, magnitude |1 + y / y_c|",
-       kPublishedStructural,
+       published("structural"),
        {.friction_mps2 = 1.0, .reversal_m = y_c},
        {0.5, 1.0, 1.2, 1.5},
        wide},
       {"structural friction, magnitude |1 + y / y_c|",
-       kPublishedStructural,
+       published("structural"),
        {.friction_mps2 = 1.0, .reversal_m = y_c},
        {1.005},
        near,
@@ -67,12 +79,12 @@ std::vector<SweepCase> sweep_cases() {
        "on how long it may: 0.145 ... 0.175 rad/s",
        0.012},
       {"structural friction, 1 + y / y_c with its sign",
-       kPublishedStructural,
+       published("structural"),
        {.friction_mps2 = 1.0, .reversal_m = y_c, .may_turn_negative = true},
        {0.5, 1.0, 1.2},
        wide},
       {"structural friction with its sign, smoothed tanh(v / 0.5)",
-       kPublishedStructural,
+       published("structural"),
        {.friction_mps2 = 1.0, .reversal_m = y_c, .may_turn_negative = true, .creep_mps = 0.5},
        {0.5, 1.0},
        low}};
@@ -178,7 +190,7 @@ std::vector<PhaseRow> resonance_rows() {
   std::vector<PhaseRow> rows{{.table = "resonance",
                               .what = "viscous damping, c = 1",
                               .unit = "rad/s",
-                              .published = kPublishedViscous,
+                              .published = published("viscous"),
                               .found = viscous.rate_rad_s.value,
                               .deviation = viscous.rate_rad_s.std,
                               .at_least = 0.995 * theory,
@@ -261,6 +273,64 @@ std::vector<PhaseRow> friction_rows(int runs) {
     rows.push_back(mean_row("y_c, magnitude of relative error, " + at, reversal, bound(0.02), ""));
     rows.push_back(mean_row("k, magnitude of relative error, " + at, stiffness, std::nullopt, ""));
   }
+  return rows;
+}
+
+namespace {
+
+/// One curve of the publication's figures 2 and 4: g over y, and how much of the motion sticks.
+void add_curve(const std::string& name, const PublishedInputs& inputs,
+               std::vector<PhaseRow>& rows) {
+  constexpr double kEveryM = 0.75;
+  constexpr double kWithinM = 3.0;
+  constexpr double kStartSpread = 3.0;
+  constexpr std::uint64_t kSeed = 2100;
+  const FrictionStudy rest = study_published_inputs(inputs, 0.0, 0.0, kSeed);
+  PhaseRow stuck{.table = "figures",
+                 .what = "share of flashes that stick, from rest, " + name,
+                 .found = rest.stuck_share()};
+  if (rest.points == 0)
+    stuck.remark = "none moves: nothing can be estimated from rest";
+  else
+    stuck.remark = fmt::format("{} flashes move, {} of {} nodes resolved", rest.points, rest.nodes,
+                               kStudyNodes);
+  rows.push_back(stuck);
+  const FrictionStudy study = study_published_inputs(inputs, kStartSpread, 0.0, kSeed);
+  rows.push_back({.table = "figures",
+                  .what = "g(y), relative error, from 24 starts within 3, " + name,
+                  .found = study.nodes > 0 ? std::optional{study.friction_error} : std::nullopt,
+                  .at_most = 0.03,
+                  .remark = fmt::format("{:.0f} % of the flashes stick and are left out; {} nodes",
+                                        100.0 * study.stuck_share(), study.nodes)});
+  for (const FrictionNode& node : study.curve.nodes) {
+    const bool shown = std::abs(std::remainder(node.deflection_m, kEveryM)) < 1e-9;
+    if (!shown || std::abs(node.deflection_m) > kWithinM) continue;
+    PhaseRow row{.table = "figures",
+                 .what = fmt::format("g({:+.2f}), {}", node.deflection_m, name),
+                 .published = std::abs(1.0 + node.deflection_m / kStudyReversalM)};
+    if (node.resolved) {
+      row.found = node.friction_mps2.value;
+      row.deviation = node.friction_mps2.std;
+    } else {
+      row.remark = "none: nothing moves there, or one way only";
+    }
+    rows.push_back(row);
+  }
+}
+
+}  // namespace
+
+std::vector<PhaseRow> figure_rows() {
+  const std::vector<double> rates = published_inputs("omega");
+  const std::vector<double> swings = published_inputs("P1");
+  const std::vector<double> means = published_inputs("P0");
+  std::vector<PhaseRow> rows;
+  for (const double rate : rates)
+    add_curve(fmt::format("omega = {}", rate), {{rate}, swings, means}, rows);
+  for (const double swing : swings)
+    add_curve(fmt::format("P1 = {}", swing), {rates, {swing}, means}, rows);
+  for (const double mean : means)
+    add_curve(fmt::format("P0 = {}", mean), {rates, swings, {mean}}, rows);
   return rows;
 }
 

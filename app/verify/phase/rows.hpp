@@ -30,6 +30,8 @@ struct PhaseRow {
 [[nodiscard]] std::vector<PhaseRow> planarity_rows(int runs);
 [[nodiscard]] std::vector<PhaseRow> linearity_rows(int runs);
 [[nodiscard]] std::vector<PhaseRow> friction_rows(int runs);
+/// g(y) at the publication's own inputs: a curve per frequency, amplitude and mean, as its figures.
+[[nodiscard]] std::vector<PhaseRow> figure_rows();
 
 [[nodiscard]] std::string text_of(const std::vector<PhaseRow>& rows);
 [[nodiscard]] std::string markdown_of(const std::vector<PhaseRow>& rows);

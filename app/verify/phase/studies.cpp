@@ -41,6 +41,21 @@ SectionMeans<8> steady_sections(const sim::OscillatorLaw& law, double swing_mps2
   return means;
 }
 
+std::vector<StrobedPoint> structural_sections(const std::vector<sim::OscillatorDrive>& regimes,
+                                              double start_spread, int starts, double noise,
+                                              std::uint64_t seed) {
+  return sim::strobe({.friction_mps2 = 1.0, .reversal_m = kStudyReversalM},
+                     {.regimes = regimes,
+                      .phases = 8,
+                      .periods = 3,
+                      .skipped_periods = 0,
+                      .steps_per_flash = 40,
+                      .start_spread = start_spread,
+                      .starts = starts,
+                      .noise = noise,
+                      .seed = seed});
+}
+
 void compare(const FrictionCurve<kStudyNodes>& curve, FrictionStudy& out) {
   double friction = 0.0;
   double restoring = 0.0;
@@ -59,6 +74,21 @@ void compare(const FrictionCurve<kStudyNodes>& curve, FrictionStudy& out) {
   }
   out.friction_error = std::sqrt(friction / friction_size);
   out.restoring_error = std::sqrt(restoring / restoring_size);
+}
+
+/// Every `stride`-th flash counts; nodes over +- reach.
+FrictionStudy map_friction(const std::vector<StrobedPoint>& points, double reach_m, int stride,
+                           double noise) {
+  using Map = FrictionMap<kStudyNodes>;
+  Map map = Map::make({-reach_m, reach_m, least_speed_mps(points, noise)}).value();
+  for (const StrobedPoint& p : points)
+    if (p.phase % stride == 0) map.add(p.point, p.input_mps2);
+  FrictionStudy out{.points = map.points(),
+                    .stuck = map.slow(),
+                    .law = FrictionLawFit<kStudyNodes, false>::fit(map),
+                    .curve = map.curve()};
+  compare(out.curve, out);
+  return out;
 }
 
 }  // namespace
@@ -124,25 +154,21 @@ ScalingVerdict study_scaling(const sim::OscillatorLaw& law, double noise, std::u
 }
 
 FrictionStudy study_friction(double noise, std::uint64_t seed, int phases) {
-  const std::vector<StrobedPoint> points = sim::strobe(
-      {.friction_mps2 = 1.0, .reversal_m = kStudyReversalM}, {.regimes = sim::moving_regimes(),
-                                                              .phases = 8,
-                                                              .periods = 3,
-                                                              .skipped_periods = 0,
-                                                              .steps_per_flash = 40,
-                                                              .start_spread = 3.0,
-                                                              .starts = 24 * 8 / phases,
-                                                              .noise = noise,
-                                                              .seed = seed});
-  using Map = FrictionMap<kStudyNodes>;
-  Map map = Map::make({-6.0, 6.0, least_speed_mps(points, noise)}).value();
-  for (const StrobedPoint& p : points)
-    if (p.phase % (8 / phases) == 0) map.add(p.point, p.input_mps2);
-  FrictionStudy out{.points = map.points(),
-                    .stuck = map.slow(),
-                    .law = FrictionLawFit<kStudyNodes, false>::fit(map)};
-  compare(map.curve(), out);
-  return out;
+  const auto points = structural_sections(sim::moving_regimes(), 3.0, 24 * 8 / phases, noise, seed);
+  return map_friction(points, 6.0, 8 / phases, noise);
+}
+
+FrictionStudy study_published_inputs(const PublishedInputs& inputs, double start_spread,
+                                     double noise, std::uint64_t seed) {
+  std::vector<sim::OscillatorDrive> regimes;
+  for (const double rate : inputs.rates_rad_s) {
+    for (const double swing : inputs.swings_mps2) {
+      for (const double mean : inputs.means_mps2) regimes.push_back({mean, swing, rate, 0.0});
+    }
+  }
+  const int starts = start_spread > 0.0 ? 24 : 1;
+  return map_friction(structural_sections(regimes, start_spread, starts, noise, seed), 6.0, 1,
+                      noise);
 }
 
 }  // namespace dampline::app

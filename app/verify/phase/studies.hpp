@@ -60,9 +60,23 @@ struct FrictionStudy {
   std::uint64_t points{0};      ///< that moved
   std::uint64_t stuck{0};       ///< left out as too slow
   FrictionLaw law;
+  FrictionCurve<kStudyNodes> curve;
+  [[nodiscard]] double stuck_share() const {
+    return static_cast<double>(stuck) / static_cast<double>(points + stuck);
+  }
 };
 /// `phases`: flashes used of the eight; with two, those at which the drive's swing vanishes, so
 /// that only its mean has to be known.
 [[nodiscard]] FrictionStudy study_friction(double noise, std::uint64_t seed, int phases = 8);
+
+/// g(y) under the inputs of the publication, P0 + P1 sin(omega t) in every combination of the
+/// values. `start_spread`: deflection and velocity at each of 24 starts are drawn from +- this; 0:
+/// each regime goes on from where the one before left it, the first from rest.
+struct PublishedInputs {
+  std::vector<double> rates_rad_s, swings_mps2, means_mps2;
+};
+[[nodiscard]] FrictionStudy study_published_inputs(const PublishedInputs& inputs,
+                                                   double start_spread, double noise,
+                                                   std::uint64_t seed);
 
 }  // namespace dampline::app

@@ -143,8 +143,8 @@ int verify_wavelet(const VerifyOptions& options) {
     fmt::print("\n{} of {} bounds met\n", count.met, count.bound);
     for (const std::string& line : missed(figures)) fmt::print("MISSED: table {}\n", line);
   }
-  if (options.json && !options.quiet) fmt::print("{}", json_of(figures));
-  if (options.markdown && !options.quiet) fmt::print("{}", markdown_of(figures));
+  if (options.json) put(options, json_of(figures));
+  if (options.markdown) put(options, markdown_of(figures));
   return count.met == count.bound ? 0 : 1;
 }
 

@@ -73,7 +73,8 @@ class FokkerPlanck {
   /// The paper's estimator with a bandwidth and an excluded region of choice; its mean level D as
   /// measured. Not ok without motion.
   [[nodiscard]] PaperForm paper_form(double mass_kg, double stiffness_npm, double bandwidth_mps,
-                                     double excluded_mps, double reach_mps = 0.0) const noexcept;
+                                     double excluded_mps, double reach_mps = 0.0,
+                                     std::size_t segments = kPaperSegments) const noexcept;
 
   [[nodiscard]] const VelocityHistogram& velocities() const noexcept { return velocities_; }
   [[nodiscard]] const DeflectionHistogram& deflections() const noexcept { return deflections_; }

@@ -88,7 +88,7 @@ FokkerPlanck::Group FokkerPlanckSolver::without(std::size_t left_out) const noex
 }
 
 PaperForm FokkerPlanckSolver::paper(double bandwidth_mps, double excluded_mps, double reach_mps,
-                                    std::size_t left_out) const noexcept {
+                                    std::size_t left_out, std::size_t segments) const noexcept {
   return fit_paper_form(data_.velocities_, deflections_,
                         {.beta = beta_,
                          .input_level = level_of(without(left_out).input),
@@ -96,6 +96,7 @@ PaperForm FokkerPlanckSolver::paper(double bandwidth_mps, double excluded_mps, d
                          .bandwidth_mps = bandwidth_mps,
                          .excluded_mps = excluded_mps,
                          .reach_mps = reach_mps,
+                         .segments = segments,
                          .left_out_group = left_out});
 }
 
@@ -110,8 +111,8 @@ FokkerPlanckSolution FokkerPlanckSolver::solve_paper(std::size_t left_out) const
   }
   out.alpha[point++] = form.offset_mps2[0] - constant;
   out.alpha[point++] = form.offset_mps2[1] - constant;
-  for (const PaperSegment& segment : form.segments[1]) {
-    out.alpha[point++] = segment.alpha_mps2 - constant;
+  for (std::size_t i = 0; i < kPaperSegments; ++i) {
+    out.alpha[point++] = form.segments[1][i].alpha_mps2 - constant;
   }
   return out;
 }
@@ -237,9 +238,10 @@ FokkerPlanckEstimates FokkerPlanck::estimates(double mass_kg, double stiffness_n
 }
 
 PaperForm FokkerPlanck::paper_form(double mass_kg, double stiffness_npm, double bandwidth_mps,
-                                   double excluded_mps, double reach_mps) const noexcept {
-  return FokkerPlanckSolver{*this, mass_kg, stiffness_npm}.paper(bandwidth_mps, excluded_mps,
-                                                                 reach_mps, kSampleGroups);
+                                   double excluded_mps, double reach_mps,
+                                   std::size_t segments) const noexcept {
+  return FokkerPlanckSolver{*this, mass_kg, stiffness_npm}.paper(
+      bandwidth_mps, excluded_mps, reach_mps, kSampleGroups, segments);
 }
 
 /// Velocities of the broken line's nodes and their hats' shares of the samples.
@@ -266,7 +268,7 @@ void FokkerPlanckSolver::place_points(const DriftSums& sums, MethodResult& resul
 }
 
 void FokkerPlanckSolver::place_paper_points(MethodResult& result) const noexcept {
-  result.points = MethodResult::kMaxPoints;
+  result.points = 2 * (kPaperSegments + 1);
   const double length = reach_mps_ / static_cast<double>(kPaperSegments);
   for (std::size_t i = 0; i <= kPaperSegments; ++i) {
     const double speed = static_cast<double>(i) * length;

@@ -21,7 +21,8 @@ class FokkerPlanckSolver {
 
   [[nodiscard]] FokkerPlanckEstimates estimates() const noexcept;
   [[nodiscard]] PaperForm paper(double bandwidth_mps, double excluded_mps, double reach_mps,
-                                std::size_t left_out) const noexcept;
+                                std::size_t left_out,
+                                std::size_t segments = kPaperSegments) const noexcept;
 
  private:
   static constexpr std::size_t kNone = kSampleGroups;

@@ -10,9 +10,9 @@
 namespace dampline {
 namespace {
 
-constexpr int kUnknowns = static_cast<int>(kPaperSegments) + 1;  // the last: the offset
+constexpr int kMostUnknowns = static_cast<int>(kMostPaperSegments) + 1;
 constexpr double kReachShare = 0.99;
-using System = Cholesky<kUnknowns>;
+using System = Cholesky<kMostUnknowns>;
 
 /// p2 and its derivatives at the bins' centres.
 struct SmoothDensity {
@@ -52,12 +52,14 @@ SmoothDensity smooth(const VelocityHistogram& velocities, const PaperFormConfig&
 struct Side {
   double length_mps;  // of a segment
   double excluded_mps;
-  int first;  // segments before it lie in the excluded region: slope 0
+  int first;     // segments before it lie in the excluded region: slope 0
+  int segments;  // the unknown after their slopes is the offset
 };
 
-/// d/dv of R_i p2 for ramp i or, i = 20, the offset, of which the paper drops the jump at zero.
+/// d/dv of R_i p2 for ramp i or, after the last, the offset, of which the paper drops the jump at
+/// zero.
 double column(int i, const Side& side, double speed, double p, double dp) noexcept {
-  if (i == kUnknowns - 1) return dp;
+  if (i == side.segments) return dp;
   const double start = i * side.length_mps;
   if (speed <= start) return 0.0;
   const double rise = speed - start;
@@ -101,7 +103,7 @@ class SideFit {
 
   [[nodiscard]] bool solve(PaperForm& out) noexcept {
     accumulate(out.integrals);
-    const int size = kUnknowns - side_.first;
+    const int size = side_.segments + 1 - side_.first;
     System cholesky;
     if (!cholesky.factor(matrix_, size)) return false;
     cholesky.solve(right_);
@@ -128,13 +130,14 @@ class SideFit {
       add_integrals(ratios_, axis_.centre(b), p, density_.dp[b], ddp, axis_.width(), integrals);
       const double target =
           -0.5 * ratios_.psi2 * ddp - beta_ * ratios_.y * sign * dp + ratios_.p1_dp1 * sign * v * p;
-      std::array<double, kUnknowns> g{};
-      for (int i = side_.first; i < kUnknowns; ++i) {
-        g[static_cast<std::size_t>(i - side_.first)] = column(i, side_, v, p, dp);
+      const int size = side_.segments + 1 - side_.first;
+      std::array<double, kMostUnknowns> g{};
+      for (int i = 0; i < size; ++i) {
+        g[static_cast<std::size_t>(i)] = column(side_.first + i, side_, v, p, dp);
       }
-      for (int i = 0; i < kUnknowns - side_.first; ++i) {
+      for (int i = 0; i < size; ++i) {
         right_[i] += g[static_cast<std::size_t>(i)] * target;
-        for (int j = 0; j < kUnknowns - side_.first; ++j) {
+        for (int j = 0; j < size; ++j) {
           matrix_(i, j) += g[static_cast<std::size_t>(i)] * g[static_cast<std::size_t>(j)];
         }
       }
@@ -143,9 +146,9 @@ class SideFit {
 
   void write(PaperForm& out) const noexcept {
     const double sign = s_ == 1 ? 1.0 : -1.0;
-    out.offset_mps2[s_] = sign * right_[kUnknowns - 1 - side_.first];
+    out.offset_mps2[s_] = sign * right_[side_.segments - side_.first];
     double alpha = out.offset_mps2[s_];
-    for (int i = 0; i < kUnknowns - 1; ++i) {
+    for (int i = 0; i < side_.segments; ++i) {
       PaperSegment& segment = out.segments[s_][static_cast<std::size_t>(i)];
       segment.from_mps = i * side_.length_mps;
       segment.to_mps = (i + 1) * side_.length_mps;
@@ -214,14 +217,19 @@ PaperForm fit_paper_form(const VelocityHistogram& velocities,
                          const PaperFormConfig& config) noexcept {
   PaperForm out;
   if (!(deflections.p1_p1 > 0.0)) return out;
+  const std::size_t segments = std::clamp(config.segments, std::size_t{1}, kMostPaperSegments);
+  out.used = segments;
   const double reach =
       config.reach_mps > 0.0 ? config.reach_mps : speed_quantile(velocities, kReachShare);
-  const double length = reach / static_cast<double>(kPaperSegments);
+  const double length = reach / static_cast<double>(segments);
   // Whole segments are left out: what is left of one that is cut would be free to follow 1 / p2,
   // which (alpha p2)' does not see.
   const auto first = static_cast<int>(std::ceil(config.excluded_mps / length - 1e-9));
-  if (first >= kUnknowns - 1) return out;
-  const Side side{.length_mps = length, .excluded_mps = first * length, .first = first};
+  if (first >= static_cast<int>(segments)) return out;
+  const Side side{.length_mps = length,
+                  .excluded_mps = first * length,
+                  .first = first,
+                  .segments = static_cast<int>(segments)};
   const double level = config.input_level;
   const Ratios ratios{.psi2 = level * deflections.psi2_p1_p1 / deflections.p1_p1,
                       .psi4 = level * level * deflections.psi4_p1_p1 / deflections.p1_p1,

@@ -9,10 +9,11 @@
 namespace dampline {
 
 /// The estimator of Kisilowski and Urbanski (1987): p(y, v) = p1(y) p2(v), alpha(v) a broken line
-/// of 20 segments a side with a jump at zero, and the stationary Fokker-Planck equation
+/// of k = 20 segments, 10 a side, with a jump at zero, and the stationary Fokker-Planck equation
 ///   -v p1' p2 + beta y p1 p2' + (alpha p2)' p1 + psi(y)^2 p1 p2'' / 2 = 0
 /// met in the least squares sense. It factors into integrals over y and over v.
-inline constexpr std::size_t kPaperSegments = 20;
+inline constexpr std::size_t kPaperSegments = 10;  ///< a side, as published
+inline constexpr std::size_t kMostPaperSegments = 20;
 inline constexpr std::size_t kVelocityBins = 512;
 inline constexpr std::size_t kDeflectionBins = 128;
 inline constexpr std::size_t kSampleGroups = 16;
@@ -25,7 +26,8 @@ struct PaperFormConfig {
   Modulation::Polynomial modulation{1.0};
   double bandwidth_mps{0.0};  ///< of the Gaussian kernel that smooths p2; at least one bin
   double excluded_mps{0.0};   ///< |v| below this, in whole segments, is left out; 0: the paper
-  double reach_mps{0.0};      ///< end of segment 20; 0: where 99 % of the mass lies
+  double reach_mps{0.0};      ///< end of the last segment; 0: where 99 % of the mass lies
+  std::size_t segments{kPaperSegments};       ///< a side, 1...kMostPaperSegments
   std::size_t left_out_group{kSampleGroups};  ///< of the samples; kSampleGroups: none
 };
 
@@ -52,8 +54,9 @@ struct PaperSegment {
 
 struct PaperForm {
   bool ok{false};
+  std::size_t used{0};  ///< segments a side
   /// [0]: v < 0, from zero outwards; [1]: v > 0.
-  std::array<std::array<PaperSegment, kPaperSegments>, 2> segments{};
+  std::array<std::array<PaperSegment, kMostPaperSegments>, 2> segments{};
   std::array<double, 2> offset_mps2{};  ///< alpha beside zero
   /// Mean of alpha over what is not excluded, weighted by p2^2 as the equations are.
   std::array<double, 2> mean_mps2{};
@@ -65,7 +68,7 @@ struct PaperForm {
 [[nodiscard]] DeflectionIntegrals deflection_integrals(
     const DeflectionHistogram& deflections, const Modulation::Polynomial& modulation) noexcept;
 
-/// Some 30,000 exponentials and two systems of 21 equations: off the path of a sample.
+/// Some 30,000 exponentials and two systems of 21 equations at most: off the path of a sample.
 [[nodiscard]] PaperForm fit_paper_form(const VelocityHistogram& velocities,
                                        const DeflectionIntegrals& deflections,
                                        const PaperFormConfig& config) noexcept;
