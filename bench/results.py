@@ -44,6 +44,7 @@ PARTS = {
     "accuracy": "Accuracy",
     "small_parts": "The estimate for small parts",
     "diagnosis": "Missing effects",
+    "coverage": "Deviations of explained parameters",
     "diagnosis_pairs": "Two missing effects at once",
     "guards": "Faults",
     "combinations": "Faults beside effects, faults and changed parameters",

@@ -54,7 +54,13 @@ struct EffectParameter {
   const char* name{""};
   Estimate estimate;
   const char* unit{""};
+  /// The parameter of the same law that this one is most correlated with: its own name, coulomb,
+  /// stiffness or law_width.
+  const char* twin{""};
+  double correlation{0.0};
 };
+/// Beyond it two parameters are not separable in this record: only what they do together is known.
+inline constexpr double kInseparable = 0.95;
 
 /// An effect that explained less than the one that was added. Errors are shares of the target's sum
 /// of squares, of entries that took no part in the fit.

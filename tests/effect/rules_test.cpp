@@ -25,11 +25,16 @@ Model with(Effect effect) {
 Verdict later(Effect known, const Step& s) { return judge_step(with(known), false, true, s); }
 
 TEST(Rules, OnlyASpringThatBendsMayComeFirstWithHardlyAnyGain) {
-  EXPECT_EQ(judge_step({}, true, false, step(Effect::kCubicStiffness, 5e-4, 1.0, 4.5)),
+  EXPECT_EQ(judge_step({}, true, true, step(Effect::kCubicStiffness, 5e-4, 3.0, 4.5)),
             Verdict::kYes);
-  EXPECT_EQ(judge_step({}, true, false, step(Effect::kCubicStiffness, 5e-4, 1.0, 3.5)),
+  EXPECT_EQ(judge_step({}, true, true, step(Effect::kCubicStiffness, 5e-4, 3.0, 3.5)),
             Verdict::kNo);
-  EXPECT_EQ(judge_step({}, true, false, step(Effect::kCubicStiffness, -1e-5, 1.0, 4.5)),
+  EXPECT_EQ(judge_step({}, true, true, step(Effect::kCubicStiffness, -1e-5, 3.0, 4.5)),
+            Verdict::kNo);
+  // Not where another leaves less, nor where the blocks do not agree.
+  EXPECT_EQ(judge_step({}, true, false, step(Effect::kCubicStiffness, 5e-4, 3.0, 4.5)),
+            Verdict::kNo);
+  EXPECT_EQ(judge_step({}, true, true, step(Effect::kCubicStiffness, 5e-4, 2.1, 4.5)),
             Verdict::kNo);
   for (const Effect e : {Effect::kViscous, Effect::kBumpStop, Effect::kUnmodelledMode})
     EXPECT_EQ(judge_step({}, true, true, step(e, 5e-4, 1.0, 40.0)), Verdict::kNo);

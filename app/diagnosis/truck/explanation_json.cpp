@@ -26,6 +26,9 @@ Json parameters_of(const Step& step) {
   for (std::size_t i = 0; i < step.parameter_count; ++i) {
     const effect::EffectParameter& p = step.parameter[i];
     list.push_back(parameter(p.name, p.estimate, p.unit));
+    if (p.correlation == 0.0) continue;
+    list.back()["correlation"] = {{"with", p.twin}, {"value", p.correlation}};
+    list.back()["separable"] = std::abs(p.correlation) <= effect::kInseparable;
   }
   return list;
 }
@@ -50,7 +53,7 @@ std::vector<JudgedCandidate> runners_up_of(const Step& step) {
   std::vector<JudgedCandidate> out;
   for (std::size_t r = 0; r < step.runner_up_count; ++r) {
     const effect::RunnerUp& u = step.runner_up[r];
-    out.push_back({effect::name_of(u.effect), error_beside(step, u), u.gain, u.block_t});
+    out.push_back({effect::name_of(u.effect), u.held_out_nmse, u.gain, u.block_t});
   }
   return out;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/diagnosis/truck/explanation_json.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 #include "app/text/format.hpp"
@@ -34,17 +36,24 @@ const char* sentence(effect::Conclusion conclusion) {
   return "too little data";
 }
 
+std::string inseparable_text(const effect::EffectParameter& p) {
+  return std::abs(p.correlation) > effect::kInseparable
+             ? fmt::format(", not separable here from {} (correlation {:.3f})", p.twin,
+                           p.correlation)
+             : "";
+}
+
 std::string step_text(const effect::Step& step) {
   std::string text = fmt::format("+ {:<18} held-out error {:.4g} -> {:.4g} (nmse), t {:.1f}\n",
                                  effect::name_of(step.chosen.effect), step.restated_before,
                                  step.restated_after, step.block_t);
   for (std::size_t i = 0; i < step.parameter_count; ++i)
-    text += fmt::format("    {:<32} {}\n", step.parameter[i].name,
-                        quantity(step.parameter[i].estimate, step.parameter[i].unit));
+    text += fmt::format("    {:<32} {}{}\n", step.parameter[i].name,
+                        quantity(step.parameter[i].estimate, step.parameter[i].unit),
+                        inseparable_text(step.parameter[i]));
   for (std::size_t i = 0; i < step.runner_up_count; ++i)
     text += fmt::format("    {:<32} {} {:.4g}\n", i == 0 ? "next best" : "",
-                        effect::name_of(step.runner_up[i].effect),
-                        error_beside(step, step.runner_up[i]));
+                        effect::name_of(step.runner_up[i].effect), step.runner_up[i].held_out_nmse);
   return text;
 }
 

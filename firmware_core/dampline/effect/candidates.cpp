@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/effect/candidates.hpp"
 
+#include <algorithm>
+
 namespace dampline::effect {
 namespace {
 
@@ -144,6 +146,76 @@ void refresh(const BaseForce& base, Candidate& candidate) noexcept {
     candidate.regressor[0] = skew_regressor(base, candidate.form);
   if (candidate.effect == Effect::kGainError)
     candidate.regressor[0] = gain_regressor(base, candidate.form);
+}
+
+namespace {
+
+Regressor point_of(const Candidate& c, std::size_t i) noexcept {
+  switch (c.effect) {
+    case Effect::kStribeck:
+      return Regressor::of(kStribeck + at(i));
+    case Effect::kPreslidingHysteresis:
+      return Regressor::of(kDahl + at(i));
+    case Effect::kBacklash:
+      return Regressor::of(kBacklash + at(i));
+    case Effect::kBumpStop:
+      if (c.form == kOneSidedDown) return Regressor::of(kBumpDown + at(i), -1.0);
+      return c.form == kOneSidedUp ? Regressor::of(kBumpUp + at(i))
+                                   : Regressor::of(kBumpUp + at(i)).plus(kBumpDown + at(i), -1.0);
+    default:
+      return Regressor::of((c.form == kPitchForm ? kPitchSign : kModeBend) + at(i));
+  }
+}
+
+/// Of the points of an effect's grid.
+std::size_t points_of(const Candidate& c, const Grids& grids) noexcept {
+  switch (c.effect) {
+    case Effect::kStribeck:
+      return kStribeckSpeeds;
+    case Effect::kPreslidingHysteresis:
+      return kDahlDistances;
+    case Effect::kBacklash:
+      return kBacklashGaps;
+    case Effect::kBumpStop:
+      return kBumpGaps;
+    case Effect::kUnmodelledMode:
+      if (c.form == kPitchForm) return kPitchModes;
+      return grids.is_fine(c.effect) ? kFineFrequencies * kFineDampings : kFlexibleModes;
+    default:
+      return 0;
+  }
+}
+
+/// Between the points on either side of the candidate's own, as far as they lie in first...end - 1.
+void add_slope(Candidate& c, std::size_t apart, std::size_t first, std::size_t end) noexcept {
+  const std::size_t i = c.variant;
+  const std::size_t low = i >= first + apart ? i - apart : i;
+  const std::size_t high = i + apart < end ? i + apart : i;
+  if (low == high) return;
+  const double weight = static_cast<double>(apart) / static_cast<double>(high - low);
+  const Regressor above = point_of(c, high);
+  const Regressor below = point_of(c, low);
+  Regressor slope;
+  for (std::size_t k = 0; k < above.count; ++k)
+    slope = slope.plus(above.column[k], weight * above.weight[k]);
+  for (std::size_t k = 0; k < below.count; ++k)
+    slope = slope.plus(below.column[k], -weight * below.weight[k]);
+  c.regressor[c.count++] = slope;
+  ++c.slopes;
+}
+
+}  // namespace
+
+Candidate with_slopes(const Candidate& candidate, const Grids& grids) noexcept {
+  Candidate out = candidate;
+  const std::size_t points = points_of(candidate, grids);
+  if (points == 0 || candidate.count != 1) return out;
+  const std::size_t line =
+      std::min(line_of(candidate.effect, candidate.form == kPitchForm, grids), points);
+  const std::size_t first = candidate.variant / line * line;
+  add_slope(out, 1, first, first + line);
+  if (line < points) add_slope(out, line, 0, points);
+  return out;
 }
 
 void list_candidates(const BaseForce& base, const Grids& grids, CandidateList& out) noexcept {

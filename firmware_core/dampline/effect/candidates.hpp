@@ -31,12 +31,13 @@ struct Regressor {
 /// One way an effect may look: its regressors, and the sign that its first coefficient must have
 /// (0: any).
 struct Candidate {
-  static constexpr std::size_t kMostRegressors = 2;
+  static constexpr std::size_t kMostRegressors = 3;
   Effect effect{Effect::kUnknown};
   std::uint8_t variant{0};  ///< place in the effect's grid
   std::uint8_t form{0};     ///< which of the effect's forms
   std::int8_t sign{0};
   std::size_t count{0};
+  std::size_t slopes{0};  ///< how many of the last regressors are derivatives along the grid
   std::array<Regressor, kMostRegressors> regressor{};
 };
 
@@ -45,7 +46,7 @@ struct Candidate {
 }
 /// Two neighbours of a grid.
 [[nodiscard]] constexpr bool is_pair(const Candidate& candidate) noexcept {
-  return candidate.count > 1 && candidate.effect != Effect::kAsymmetricViscous;
+  return candidate.count - candidate.slopes > 1 && candidate.effect != Effect::kAsymmetricViscous;
 }
 
 /// Forms of the effects that have more than one.
@@ -76,6 +77,11 @@ struct CandidateList {
 /// The library of effects, every point of every grid, and between neighbours where the grid is
 /// wide.
 void list_candidates(const BaseForce& base, const Grids& grids, CandidateList& out) noexcept;
+
+/// A candidate with the derivatives of its regressor along the grid, per step, beside it: of its
+/// length, speed or frequency, then of a mode's slip or damping. What lies between two points of a
+/// grid, or has none, as it is.
+[[nodiscard]] Candidate with_slopes(const Candidate& candidate, const Grids& grids) noexcept;
 
 /// The candidates of a model that need the base force, with what is known of it now: channels that
 /// are late or wrongly scaled.

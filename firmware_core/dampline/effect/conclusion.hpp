@@ -16,8 +16,7 @@ struct Step {
   static constexpr std::size_t kMostRunnersUp = 4;
   static constexpr std::size_t kMostParameters = 4;
   Candidate chosen;
-  double place{0.0};  ///< in the effect's grid, refined between its points
-  double place_std{0.0};
+  double place{0.0};        ///< in the effect's grid, refined between its points
   double line_offset{0.0};  ///< of a mode between its line of the grid and the next
   double held_out_nmse_before{0.0};
   double held_out_nmse_after{0.0};
@@ -28,6 +27,7 @@ struct Step {
   double coefficient_t{0.0};  ///< its first coefficient over the deviation
   std::size_t runner_up_count{0};
   std::array<RunnerUp, kMostRunnersUp> runner_up{};
+  std::array<Candidate, kMostRunnersUp> other{};  ///< what the runners-up are
   std::size_t parameter_count{0};
   std::array<EffectParameter, kMostParameters> parameter{};  ///< of the final model
 };
@@ -57,13 +57,10 @@ struct Explanation {
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
 };
 
-/// Held-out error that a runner-up would have left, beside a step's restated ones.
-[[nodiscard]] double error_beside(const Step& step, const RunnerUp& runner_up) noexcept;
 /// Held-out error of the base in the weights of the final model, which the steps and the final
 /// error are in.
 [[nodiscard]] double base_error(const Explanation& explanation) noexcept;
-/// What is left over what a complete model leaves; 0 where that is unknown. What impacts leave that
-/// were named does not count.
+/// What is left over what a complete model leaves; 0 where that is unknown.
 [[nodiscard]] double floor_ratio(const Explanation& explanation) noexcept;
 /// Friction and spring of the final model are more than nothing. Otherwise no floor can be
 /// computed, and no law of such a model is one of a suspension.
@@ -74,9 +71,6 @@ inline constexpr double kIncompleteAbove = 1.5;
 /// Decides the conclusion from the steps and the floor; an impossible model explains nothing.
 /// `impacts`: blows in the input, which every model leaves a little of.
 void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
-
-/// Fills in the physical parameters of every step and of base and final model.
-void describe(double moving_mass_kg, Explanation& out) noexcept;
 
 /// The base and what was added to it that has memory.
 [[nodiscard]] Model remembering_part(const Explanation& explanation) noexcept;

@@ -26,6 +26,7 @@ Grids scaled(Grids grids, double scale_m) noexcept {
 Diagnosis::Diagnosis(const EstimatorConfig& config, const Grids& grids) noexcept
     : sample_rate_hz_{config.sample_rate_hz},
       block_ticks_{std::lround(Estimator::kBlockS * config.sample_rate_hz)},
+      lift_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps()},
       raw_{config.sample_rate_hz},
       rows_{config.sample_rate_hz},
       mean_{scaled(grids, grids.scale_m > 0.0 ? grids.scale_m : kStartScaleM),
@@ -57,6 +58,17 @@ bool Diagnosis::learn(const Motion& motion) noexcept {
   return true;
 }
 
+/// y'' with its fast part lifted as that of the velocity, whose rate it is.
+double Diagnosis::lifted_mps2(std::int64_t tick) const noexcept {
+  double sum = 0.0;
+  tick -= VelocityLift::kHalf;
+  for (const double tap : lift_) {
+    const auto& a = raw_.at(tick++).accel_mps2;
+    sum += tap * (2.0 * a[0] - a[1] - a[2]);
+  }
+  return sum;
+}
+
 void Diagnosis::restart(const Motion& motion) noexcept {
   in_stretch_ = true;
   for (Resonator& r : flexible_) r.reset();
@@ -68,7 +80,7 @@ Instant Diagnosis::instant_of(const Motion& motion) noexcept {
   const RawRing::Entry& now = raw_.at(motion.tick);
   Instant out;
   out.deflection_m = {motion.deflection_m, motion.velocity_mps};
-  out.velocity_mps = {motion.velocity_mps, motion.relative_mps2};
+  out.velocity_mps = {motion.velocity_mps, lifted_mps2(motion.tick)};
   out.wheelset1_mps = {now.wheelset_mps[0], now.accel_mps2[1]};
   out.wheelset2_mps = {now.wheelset_mps[1], now.accel_mps2[2]};
   const RawRing::Entry& before = raw_.at(motion.tick - 1);

@@ -8,6 +8,7 @@
 #include "dampline/effect/laws.hpp"
 #include "dampline/effect/modes.hpp"
 #include "dampline/effect/rows.hpp"
+#include "dampline/motion/anti_alias.hpp"
 
 namespace dampline::effect {
 
@@ -48,6 +49,7 @@ class Diagnosis {
   void restart(const Motion& motion) noexcept;
   bool learn(const Motion& motion) noexcept;
   [[nodiscard]] Instant instant_of(const Motion& motion) noexcept;
+  [[nodiscard]] double lifted_mps2(std::int64_t tick) const noexcept;
   void build_rows(std::int64_t newest) noexcept;
   void close_before(std::int64_t block) noexcept;
   [[nodiscard]] std::int64_t block_of(std::int64_t tick) const noexcept {
@@ -56,6 +58,7 @@ class Diagnosis {
 
   double sample_rate_hz_;
   std::int64_t block_ticks_;
+  VelocityLift::Taps lift_;
   RawRing raw_;
   Rows rows_;
   GramStore store_;

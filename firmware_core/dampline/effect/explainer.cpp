@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dampline/effect/rules.hpp"
+#include "dampline/estimate/weighted_fit.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -62,15 +63,18 @@ void add_impulses(const ImpulseMeter& meter, const ModelFit& now, Explanation& o
       ""};
 }
 
+void remove_step(Explanation& e, std::size_t i) noexcept {
+  e.model = e.model.without(e.base_count + i);
+  std::shift_left(e.step.begin() + static_cast<std::ptrdiff_t>(i), e.step.end(), 1);
+  --e.step_count;
+}
+
 /// Of two forms that explain alike, the plainer one.
 double handicap(const Candidate& candidate) noexcept {
   const bool between = is_pair(candidate);
   const bool one_sided = candidate.effect == Effect::kBumpStop && candidate.form != kPlainForm;
   return 1.0 + (between ? 0.01 : 0.0) + (one_sided ? 0.015 : 0.0);
 }
-
-constexpr double kGridStd = 0.29;     // of a place known to one step: 1 / sqrt(12)
-constexpr double kRowsPerFact = 4.0;  // windows overlap
 
 /// Where the parabola through three errors is least, in steps from the middle one.
 double vertex(const std::array<double, 2>& side, double middle) noexcept {
@@ -79,8 +83,20 @@ double vertex(const std::array<double, 2>& side, double middle) noexcept {
   return std::clamp(0.5 * (side[0] - side[1]) / curvature, -0.5, 0.5);
 }
 
-constexpr double kSurrogateGains =
-    2.0;  // a real effect gains more than so many times the surrogate's
+constexpr double kSurrogateGains = 2.0;  // what a real effect gains over the surrogate's gain
+
+/// A channel that was set right is no column: what that took is known by the errors before and
+/// after.
+bool was_late(const Step& step, const Candidate& added) noexcept {
+  return step.chosen.effect == Effect::kTimeSkew && added.count == 0;
+}
+double lateness_ratio(const Step& step) noexcept {
+  return step.held_out_nmse_before / step.held_out_nmse_after;
+}
+
+void scale_runners_up(double factor, Step& step) noexcept {
+  for (std::size_t r = 0; r < step.runner_up_count; ++r) step.runner_up[r].held_out_nmse *= factor;
+}
 
 }  // namespace
 
@@ -112,12 +128,11 @@ ModelFit Explainer::settle(const GramStore& store, Model& model) noexcept {
   return fit;
 }
 
-void Explainer::add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
-                              Step& step) noexcept {
+RunnerUp Explainer::runner_up_of(const Model& model, const Candidate& candidate,
+                                 const ModelFit& now) noexcept {
   const ModelFit fit = fitter_.fit(model.with(candidate));
-  step.runner_up[step.runner_up_count++] = {
-      candidate.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / now.held_out_nmse,
-      block_t(now, fit, evidence_.count), coefficient_t(fit, now)};
+  return {candidate.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / now.held_out_nmse,
+          block_t(now, fit, evidence_.count), coefficient_t(fit, now)};
 }
 
 /// Of damping that differs by direction and the best with one coefficient, the plainer one unless
@@ -194,7 +209,8 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
   return any;
 }
 
-/// The c-th of the best candidates beside the others.
+/// The c-th of the best candidates beside the others. One that leaves less was passed over, since
+/// it can do more and its lead is no more than that: it is no runner-up.
 Step Explainer::step_of(const Model& model, const Best* const* order, std::size_t found,
                         std::size_t c, const ModelFit& now) noexcept {
   const ModelFit fit = fitter_.fit(model.with(order[c]->candidate));
@@ -206,7 +222,9 @@ Step Explainer::step_of(const Model& model, const Best* const* order, std::size_
   step.block_t = block_t(now, fit, evidence_.count);
   step.coefficient_t = coefficient_t(fit, now);
   for (std::size_t i = 0; i < found && step.runner_up_count < Step::kMostRunnersUp; ++i) {
-    if (i != c) add_runner_up(model, order[i]->candidate, now, step);
+    if (i == c || order[i]->held_out_nmse < fit.held_out_nmse) continue;
+    step.other[step.runner_up_count] = order[i]->candidate;
+    step.runner_up[step.runner_up_count++] = runner_up_of(model, order[i]->candidate, now);
   }
   return step;
 }
@@ -217,15 +235,12 @@ void Explainer::backward(Explanation& out, ModelFit& now) noexcept {
       ++i;
       continue;
     }
-    const Model less = out.model.without(out.base_count + i);
-    const ModelFit without = fitter_.fit(less);
+    const ModelFit without = fitter_.fit(out.model.without(out.base_count + i));
     if (!without.ok || without.held_out_nmse > (1.0 + kNeeded) * now.held_out_nmse) {
       ++i;
       continue;
     }
-    out.model = less;
-    for (std::size_t j = i; j + 1 < out.step_count; ++j) out.step[j] = out.step[j + 1];
-    --out.step_count;
+    remove_step(out, i);
     now = without;
     i = 0;
   }
@@ -248,6 +263,10 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   out.base = now;
   out.base_weight = evidence_.weight;
   out.base_target = evidence_.total.at(kTarget, kTarget);
+  look_into(store, out.model, config.moving_mass_kg);
+  const BaseParameters base = base_parameters(detail_);
+  out.base_coulomb_n = base.coulomb_n;
+  out.base_stiffness_npm = base.stiffness_npm;
   if (config.known != nullptr) keep(store, *config.known, out, now);
   while (forward(out, now)) {
     now = settle(store, out.model);
@@ -256,26 +275,54 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   const bool impulses = allowed_[static_cast<std::size_t>(Effect::kImpulsiveInput)];
   if (out.step_count == 0 && impulses) add_impulses(meter, now, out);
   backward(out, now);
-  out.final = settle(store, out.model);
+  do {
+    out.final = settle(store, out.model);
+    restate(out);
+  } while (drop_worthless(out));
   out.weight = evidence_.weight;
   out.target = evidence_.total.at(kTarget, kTarget);
   for (std::size_t i = 0; i + out.base_count < out.model.count; ++i) {
     refine(out.model, out.base_count + i, out.final, out.step[i]);
   }
-  restate(out);
+  look_into(store, out.model, config.moving_mass_kg);
+  describe(detail_, out);
+  if (out.step_count > 0)
+    out.final.held_out_nmse = out.step[out.step_count - 1].restated_after;
+  else
+    drop_steps(out);
   out.floor_nmse = config.floor_nmse;
-  describe(config.moving_mass_kg, out);
   conclude(0, out);
   return out;
 }
 
-/// Where the error is least between the grid's points: the vertex of the parabola through it and
-/// its neighbours; its deviation from the parabola's curvature.
+void Explainer::look_into(const GramStore& store, const Model& model, double mass_kg) noexcept {
+  detail_.mass_kg = mass_kg;
+  detail_.factor = short_record_factor(static_cast<double>(evidence_.count));
+  detail_.model = model;
+  for (std::size_t i = 0; i < model.count; ++i)
+    detail_.model.effect[i] = with_slopes(model.effect[i], grids_);
+  detail_.fit = fitter_.fit(detail_.model);
+  if (!detail_.fit.ok) {
+    detail_.model = model;
+    detail_.fit = fitter_.fit(model);
+  }
+  const ScaleWeights weights = evidence_.weight;
+  ScaleWeights slow = weights;
+  slow.back() = 0.0;
+  evidence_.weigh(store, slow);
+  Model same = detail_.model;
+  detail_.slow = settle(store, same);
+  if (!detail_.slow.ok) detail_.slow = detail_.fit;
+  evidence_.weigh(store, weights);
+}
+
+/// Where the error is least between the points of a wide grid, by which a finer one is drawn: the
+/// vertex of the parabola through it and its neighbours.
 void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
                        Step& step) noexcept {
   const Candidate& chosen = step.chosen;
+  if (grids_.is_fine(chosen.effect)) return;
   step.place = chosen.variant;
-  step.place_std = kGridStd;
   if (is_pair(chosen)) {
     const int term = first_term(model, i);
     const double low = std::abs(final.theta[term]);
@@ -285,13 +332,8 @@ void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
   }
   list_candidates(base_of(final), grids_, candidates_);
   const std::size_t line = line_of(chosen.effect, chosen.form == kPitchForm, grids_);
-  const std::array<double, 2> side = beside(model, i, 1, true);
-  step.place += vertex(side, final.nmse);
+  step.place += vertex(beside(model, i, 1, true), final.nmse);
   step.line_offset = vertex(beside(model, i, static_cast<int>(line), false), final.nmse);
-  const double curvature = side[0] + side[1] - 2.0 * final.nmse;
-  if (!(side[0] > 0.0 && side[1] > 0.0 && curvature > 0.0)) return;
-  const double target = evidence_.total.at(kTarget, kTarget);
-  step.place_std = std::clamp(std::sqrt(2.0 * kRowsPerFact / (curvature * target)), 0.05, kGridStd);
 }
 
 std::array<double, 2> Explainer::beside(const Model& model, std::size_t i, int apart,
@@ -333,8 +375,9 @@ void Explainer::keep(const GramStore& store, const Explanation& known, Explanati
     out.model = out.model.with(member);
     now = settle(store, out.model);
     if (late) {
-      step.held_out_nmse_after = now.held_out_nmse;
-      step.gain = 1.0 - step.held_out_nmse_after / step.held_out_nmse_before;
+      // More than its column to first order, by which it was chosen; in other weights hardly less.
+      step.gain = std::max(step.gain, 1.0 - now.held_out_nmse / step.held_out_nmse_before);
+      step.held_out_nmse_after = (1.0 - step.gain) * step.held_out_nmse_before;
     }
     out.step[out.step_count++] = step;
   }
@@ -343,20 +386,50 @@ void Explainer::keep(const GramStore& store, const Explanation& known, Explanati
   out.base_target = known.base_target;
 }
 
+void Explainer::restate_runners_up(const Model& model, const ModelFit& now, Step& step) noexcept {
+  for (std::size_t r = 0; r < step.runner_up_count; ++r) {
+    refresh(base_of(now), step.other[r]);
+    step.runner_up[r] = runner_up_of(model, step.other[r], now);
+  }
+}
+
 void Explainer::restate(Explanation& e) noexcept {
+  double late = 1.0;
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    if (was_late(e.step[i], e.model.effect[e.base_count + i])) late *= lateness_ratio(e.step[i]);
+  }
   Model model = e.base_model;
-  double before = fitter_.fit(model).held_out_nmse;
-  e.base_restated_nmse = before;
+  ModelFit now = fitter_.fit(model);
+  e.base_restated_nmse = late * now.held_out_nmse;
+  double before = e.base_restated_nmse;
   for (std::size_t i = 0; i < e.step_count; ++i) {
     Step& step = e.step[i];
     const Candidate& added = e.model.effect[e.base_count + i];
-    step.restated_before = step.held_out_nmse_before;
-    step.restated_after = step.held_out_nmse_after;
-    if (added.count == 0) continue;  // no column, so no other error
-    model = model.with(added);
     step.restated_before = before;
-    step.restated_after = before = fitter_.fit(model).held_out_nmse;
+    if (step.chosen.effect == Effect::kImpulsiveInput) {
+      step.restated_after = before *= 1.0 - step.gain;
+      continue;
+    }
+    if (was_late(step, added)) {
+      late /= lateness_ratio(step);
+      scale_runners_up(before / step.held_out_nmse_before, step);
+    } else {
+      restate_runners_up(model, now, step);
+      scale_runners_up(late, step);
+      model = model.with(added);
+      now = fitter_.fit(model);
+    }
+    step.restated_after = before = late * now.held_out_nmse;
   }
+}
+
+bool Explainer::drop_worthless(Explanation& e) noexcept {
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    if (e.step[i].restated_after < e.step[i].restated_before) continue;
+    remove_step(e, i);
+    return true;
+  }
+  return false;
 }
 
 Explainer::Prediction Explainer::predict(const Diagnosis& other, const Explanation& by) noexcept {

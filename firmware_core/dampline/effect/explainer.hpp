@@ -4,6 +4,7 @@
 
 #include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/diagnosis.hpp"
+#include "dampline/effect/parameters.hpp"
 
 namespace dampline::effect {
 
@@ -80,6 +81,11 @@ class Explainer {
   /// Errors of base and steps once more in the weights of the final model: those that effects were
   /// chosen by do not compare from one step to the next.
   void restate(Explanation& explanation) noexcept;
+  void restate_runners_up(const Model& model, const ModelFit& now, Step& step) noexcept;
+  /// Takes back a step that in the final weights gains nothing; false: there is none.
+  bool drop_worthless(Explanation& explanation) noexcept;
+  /// Fits a model for its parameters, in the weights of now.
+  void look_into(const GramStore& store, const Model& model, double mass_kg) noexcept;
   void try_all(const Model& model, const ModelFit& now, BestOfEffects& best) noexcept;
   /// Fits a model, weighs the scales by what it leaves, and gives late and wrongly scaled channels
   /// the friction and spring that the whole model has.
@@ -92,8 +98,8 @@ class Explainer {
   bool readjust(Explanation& out, ModelFit& now) noexcept;
   void keep(const GramStore& store, const Explanation& known, Explanation& out,
             ModelFit& now) noexcept;
-  void add_runner_up(const Model& model, const Candidate& candidate, const ModelFit& now,
-                     Step& step) noexcept;
+  [[nodiscard]] RunnerUp runner_up_of(const Model& model, const Candidate& candidate,
+                                      const ModelFit& now) noexcept;
   void refine(const Model& model, std::size_t i, const ModelFit& final, Step& step) noexcept;
   /// NMSE with the points of a grid on either side of a model's i-th effect, `apart` from it and in
   /// its line, or in the lines before and after; 0: there is none.
@@ -110,6 +116,7 @@ class Explainer {
   Evidence evidence_;
   ModelFitter fitter_;
   CandidateList candidates_;
+  Detail detail_;
   std::array<bool, kEffects> allowed_{};
   Grids grids_;
 };

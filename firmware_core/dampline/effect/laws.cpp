@@ -9,8 +9,6 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kEngagedOver = 0.1;  // of the gap: where the force of a taken-up gap rises
-
 float single(double x) noexcept { return static_cast<float>(x); }
 
 /// exp(-x) for x >= 0 by the inverse of its series: within 2 % to x = 1.5, positive beyond.

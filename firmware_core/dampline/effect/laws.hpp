@@ -60,6 +60,8 @@ struct Hermite {
   }
 };
 
+inline constexpr double kEngagedOver = 0.1;  ///< of a gap: where the force of a taken-up one rises
+
 /// Values of the columns that are functions of the motion; single precision, since they are
 /// projected on thousands of windows and never differenced.
 using LawValues = Eigen::Matrix<float, kLawColumns, 1>;

@@ -118,32 +118,42 @@ int ModelFitter::columns(const Model& model, std::size_t i, Terms& terms) noexce
   return count;
 }
 
-ModelFit ModelFitter::fit(const Model& model) noexcept {
+/// The width that fits best as it is, as the estimate chooses it: with its change among the
+/// unknowns, distant ones would mimic other laws.
+bool ModelFitter::choose_width(const Model& model, std::size_t& best) const noexcept {
   Terms terms{};
-  ModelFit out;
-  double best = 0.0;
+  bool found = false;
+  double least = 0.0;
   for (std::size_t i = 0; i < kWidths; ++i) {
-    const int count = columns(model, i, terms);
+    const int count = columns(model, i, terms) - 1;
+    std::copy(terms.begin() + ModelFit::kWidthChange + 1, terms.end(),
+              terms.begin() + ModelFit::kWidthChange);
     Small normal;
     project(evidence_->total, terms, count, normal);
     ModelFit::Vector theta;
     if (!solve(normal, count, theta)) continue;
     const double error = error_of(normal, count, theta);
-    // A step of the width beyond its neighbours is no width.
-    const double shift = theta[ModelFit::kWidthChange] / theta[ModelFit::kCoulomb];
-    const double judged = error * (std::abs(shift) > 1.0 ? 1.5 : 1.0);
-    if (out.ok && judged >= best) continue;
-    best = judged;
-    out.ok = true;
-    out.terms = count - 1;
-    out.width_index = i;
-    out.width_mps = kWidthMps[i] + shift * (kWidthMps[above(i)] - kWidthMps[below(i)]);
-    out.theta = theta;
-    out.nmse = error / normal(count - 1, count - 1);
+    if (found && error >= least) continue;
+    found = true;
+    least = error;
+    best = i;
   }
-  if (!out.ok) return out;
-  const int count = columns(model, out.width_index, terms);
+  return found;
+}
+
+ModelFit ModelFitter::fit(const Model& model) noexcept {
+  Terms terms{};
+  ModelFit out;
+  if (!choose_width(model, out.width_index)) return out;
+  const std::size_t i = out.width_index;
+  const int count = columns(model, i, terms);
   project(evidence_->total, terms, count, total_);
+  out.ok = solve(total_, count, out.theta);
+  if (!out.ok) return out;
+  out.terms = count - 1;
+  const double shift = out.theta[ModelFit::kWidthChange] / out.theta[ModelFit::kCoulomb];
+  out.width_mps = kWidthMps[i] + shift * (kWidthMps[above(i)] - kWidthMps[below(i)]);
+  out.nmse = error_of(total_, count, out.theta) / total_(count - 1, count - 1);
   for (std::size_t e = 0; e < evidence_->count; ++e) {
     project(evidence_->entry[e], terms, count, entry_[e]);
   }

@@ -48,6 +48,7 @@ struct Model {
   }
 };
 
+/// Two for each effect, of which one mode, which may have three, and one that has a single one.
 inline constexpr int kMostTerms = 3 + 2 * static_cast<int>(Model::kMostEffects);
 
 /// Unknowns in order: friction, spring, change of friction with its width, then the effects'.
@@ -96,6 +97,7 @@ class ModelFitter {
   /// Fills in the columns of a model with the law's width i; returns how many, the target included.
   [[nodiscard]] static int columns(const Model& model, std::size_t i, Terms& terms) noexcept;
   void project(const Gram& gram, const Terms& terms, int count, Small& out) const noexcept;
+  [[nodiscard]] bool choose_width(const Model& model, std::size_t& best) const noexcept;
   void judge(ModelFit& fit) noexcept;
   void spread(ModelFit& fit) noexcept;
 

@@ -23,7 +23,8 @@ constexpr double kLaterT = 3.5;
 constexpr double kLaterZ = 10.0;
 constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ
 constexpr double kLaterClearZ = 8.0;
-constexpr double kFaintZ = 4.2;
+constexpr double kFaintZ = 4.2;  // with kFaintT
+constexpr double kFaintT = 2.5;
 constexpr double kFaintFrictionGain = 0.0015;  // with kFaintFrictionT and kFaintFrictionZ
 constexpr double kFaintFrictionT = 1.5;
 constexpr double kFaintFrictionZ = 12.0;
@@ -112,7 +113,7 @@ bool is_faint(const Step& step) noexcept {
   const Effect e = step.chosen.effect;
   const bool spring = e == Effect::kCubicStiffness || e == Effect::kQuadraticStiffness ||
                       e == Effect::kAsymmetricStiffness;
-  return spring && step.gain > 0.0 && step.coefficient_t > kFaintZ;
+  return spring && step.gain > 0.0 && step.block_t > kFaintT && step.coefficient_t > kFaintZ;
 }
 
 /// Friction that falls with speed, where the velocity's error, which looks like it, is far less
@@ -144,8 +145,8 @@ double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {
 
 Verdict judge_step(const Model& model, bool first, bool best, const Step& step) noexcept {
   if (first) {
-    const bool joins = is_faint(step) || (best && (passes_first(step) || is_faint_friction(step)));
-    return joins ? Verdict::kYes : Verdict::kNo;
+    const bool joins = passes_first(step) || is_faint_friction(step) || is_faint(step);
+    return best && joins ? Verdict::kYes : Verdict::kNo;
   }
   if (passes_later(step, later_gain(model, step.chosen))) return Verdict::kYes;
   // The best is but an imperfection of what is in the model: so may be all that explain less.

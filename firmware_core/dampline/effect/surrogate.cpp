@@ -39,6 +39,7 @@ bool is_number(const Sample& sample) {
 Surrogate::Surrogate(const SurrogateConfig& config)
     : config_{config}, filter_{filter_of(config, kFine)}, noise_{config.seed, kStream} {
   set_taps();
+  if (config.memory.is_play) config_.memory.length_m /= 1.0 - 0.5 * kRamp;
   const double sliding_mps2 =
       config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);
   const double slope = 2.0 * sliding_mps2 / kLawWidthMps;

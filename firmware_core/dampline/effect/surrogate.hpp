@@ -15,7 +15,7 @@ namespace dampline::effect {
 struct FrictionMemory {
   bool is_play{false};
   double force_mps2{0.0};  ///< per unit of mass, in steady sliding; 0: none
-  double length_m{0.0};
+  double length_m{0.0};    ///< of a play: to where half the force is there
 };
 
 /// The law and the sensors, as a record tells them.
