@@ -36,6 +36,11 @@ constexpr double kMaxDependence = 0.2;
 constexpr double kMaxChange = 0.3;     // of ln power, beside ...
 constexpr double kChanceSigmas = 4.0;  // ... as many deviations of chance
 constexpr std::size_t kMinGroups = 8;
+// Trucks with dry friction 0.05 to 0.10, whole cars whose frames pitch 0.16 to 0.42.
+constexpr double kMaxSag = 0.13;
+constexpr double kFewestFast = 300.0;  // samples a side
+constexpr std::size_t kSlowBin = 3;    // 5.5 to 8 mm/s
+constexpr std::size_t kFastBin = 6;    // 14.5 mm/s and more
 
 /// Scatter of the spectrum's lines about their mean, dB.
 double colour_db(const InputSpectrum::Sums& sums) noexcept {
@@ -228,6 +233,7 @@ FokkerPlanckEstimates FokkerPlanckSolver::estimates() const noexcept {
 
   out.known_input.verdict = common;
   require_segments(away_segments_, out.known_input.verdict);
+  require_level(out.known_input.verdict);
   place_points(total_.away, out.known_input);
   complete(&FokkerPlanckSolver::solve_known, out.known_input);
   return out;
@@ -303,6 +309,27 @@ TrustVerdict FokkerPlanckSolver::support() const noexcept {
 
 void FokkerPlanckSolver::require_segments(std::size_t segments, TrustVerdict& verdict) noexcept {
   verdict.require_at_least(Reason::kNarrowMotion, static_cast<double>(segments), kMinSegments);
+}
+
+/// The force of bins of velocity, without what is the same on both sides; 0 with too few samples.
+double FokkerPlanckSolver::force_of(std::size_t first, std::size_t end) const noexcept {
+  double force = 0.0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    DriftMoments sum;
+    for (std::size_t b = first; b < end; ++b) sum.add(total_.away.sides[s][b]);
+    if (sum.n < kFewestFast) return 0.0;
+    force += (s == 0 ? 1.0 : -1.0) * (2.0 * sum.a + beta_ * sum.y) / sum.n;
+  }
+  return force;
+}
+
+/// A level is what it gives: where dampers of a pitching frame slide against each other, which they
+/// do in slow motion, there is less of it.
+void FokkerPlanckSolver::require_level(TrustVerdict& verdict) const noexcept {
+  const double fast = force_of(kFastBin, DriftBins::kPerSide);
+  if (!(fast > 0.0)) return;
+  verdict.require_at_most(Reason::kBentCurve, 1.0 - force_of(kSlowBin, kSlowBin + 1) / fast,
+                          kMaxSag);
 }
 
 void FokkerPlanckSolver::require_range(TrustVerdict& verdict) const noexcept {

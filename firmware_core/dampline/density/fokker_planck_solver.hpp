@@ -35,6 +35,8 @@ class FokkerPlanckSolver {
   [[nodiscard]] FokkerPlanckSolution from_fit(const DriftFit& fit) const noexcept;
   [[nodiscard]] TrustVerdict support() const noexcept;
   static void require_segments(std::size_t segments, TrustVerdict& verdict) noexcept;
+  [[nodiscard]] double force_of(std::size_t first, std::size_t end) const noexcept;
+  void require_level(TrustVerdict& verdict) const noexcept;
   void require_range(TrustVerdict& verdict) const noexcept;
   void require_white(TrustVerdict& verdict) const noexcept;
   void require_stationary(TrustVerdict& verdict) const noexcept;

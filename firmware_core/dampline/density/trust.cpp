@@ -21,6 +21,8 @@ const char* text(Reason reason) noexcept {
       return "deflection and velocity are not independent";
     case Reason::kNonStationary:
       return "the motion is not stationary";
+    case Reason::kBentCurve:
+      return "its force falls towards slow motion, as where the frame pitches";
     case Reason::kNotSolvable:
       return "its equations have no solution";
   }
@@ -41,6 +43,7 @@ const char* unit(Reason reason) noexcept {
     case Reason::kRangeClips:
     case Reason::kDependence:
     case Reason::kNonStationary:
+    case Reason::kBentCurve:
     case Reason::kNotSolvable:
       return "";
   }

@@ -16,9 +16,10 @@ enum class Reason : std::uint8_t {
   kColouredInput,    ///< scatter of the input's spectrum over its lines, dB; at most the limit
   kDependence,       ///< of y and v, sqrt(chi^2 / N) above chance; at most the limit
   kNonStationary,    ///< largest |ln| of a quarter's power over the mean, above chance
+  kBentCurve,        ///< 1 - force of slow motion over that of fast motion; at most the limit
   kNotSolvable,      ///< equations without a solution; 1 is a violation
 };
-inline constexpr std::size_t kReasons = 9;
+inline constexpr std::size_t kReasons = 10;
 
 /// In words that end a sentence: "not trusted: ...".
 [[nodiscard]] const char* text(Reason reason) noexcept;
