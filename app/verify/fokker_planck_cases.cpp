@@ -126,29 +126,53 @@ LoadRuns runs_of(sim::Load load, std::uint64_t first_seed) {
   return out;
 }
 
+/// A method, and what is promised of its mean; 0: nothing.
+struct Form {
+  MethodResult FokkerPlanckEstimates::*method;
+  double bound;
+};
+
 void add_mean_forces(const LoadRuns& runs, const char* load, Figures& figures) {
   const PrintedTable& printed = printed_table(kisilowski_urbanski(), "mean forces");
   const auto add = [&](const char* column, double sign, const auto& data, const char* with,
-                       const std::string& remark) {
+                       const std::string& remark, const Form& form) {
     std::vector<double> forces;
     for (const auto& one : data)
       forces.push_back(branch_force(
-          one->estimates(runs.config.moving_mass_kg, runs.config.stiffness_npm).weak, sign));
+          one->estimates(runs.config.moving_mass_kg, runs.config.stiffness_npm).*form.method,
+          sign));
     const OverRuns found = over(forces);
+    const double truth =
+        sign > 0.0 ? runs.config.friction_positive_n : runs.config.friction_negative_n;
+    const bool promised = form.bound > 0.0;
     figures.push_back(
         {.quantity = fmt::format("mean {} of nine {} runs, N, {}", column, load, with),
          .published = printed.text(load, column),
          .computed = fmt::format("{:.0f} +- {:.0f}", found.mean, found.std),
-         .remark = remark});
+         .remark =
+             promised ? fmt::format("{}; promised: {:.1f} %", remark, 100.0 * form.bound) : remark,
+         .promised = promised,
+         .met = !promised || std::abs(found.mean / truth - 1.0) <= form.bound});
   };
-  const char* const simulated = "weak form on simulations with the published means; +-: of a run";
+  // The weak form knows the input's level alone, so the chance of its noise and an asymmetry near
+  // v = 0 stay: 16 seeds left 1.7 +- 2.6 and -1.3 +- 1.9 % laden, 2.4 +- 1.9 and -3.1 +- 2.1 %
+  // empty.
+  constexpr Form kWeak{&FokkerPlanckEstimates::weak, 0.06};
+  constexpr Form kWeakWithoutMean{&FokkerPlanckEstimates::weak, 0.0};
+  constexpr Form kKnown{&FokkerPlanckEstimates::known_input, 0.001};
+  const char* const simulated =
+      "weak form on simulations with the published means, which knows the input's level and not "
+      "its chance; +-: of a run";
+  const char* const known = "the same simulations with the input as measured";
   const char* const lost =
       "not reproducible from accelerations: a constant force moves only the mean deflection, so "
       "only (F1 + F2) / 2 is observable";
-  add("F1", 1.0, runs.absolute, "true deflection", simulated);
-  add("F2", -1.0, runs.absolute, "true deflection", simulated);
-  add("F1", 1.0, runs.free, "deflection without its mean", lost);
-  add("F2", -1.0, runs.free, "deflection without its mean", lost);
+  add("F1", 1.0, runs.absolute, "true deflection", simulated, kWeak);
+  add("F2", -1.0, runs.absolute, "true deflection", simulated, kWeak);
+  add("F1", 1.0, runs.absolute, "true deflection, known input", known, kKnown);
+  add("F2", -1.0, runs.absolute, "true deflection, known input", known, kKnown);
+  add("F1", 1.0, runs.free, "deflection without its mean", lost, kWeakWithoutMean);
+  add("F2", -1.0, runs.free, "deflection without its mean", lost, kWeakWithoutMean);
 }
 
 /// psi_i = eta_i / xi_i with pseudo-random xi_i, fitted by a polynomial in y; returns the factor
