@@ -13,6 +13,7 @@ constexpr std::int64_t kDecimation = kStepRateHz / kSampleRateHz;
 constexpr std::uint64_t kOwnTrackSalt = 0x9e3779b97f4a7c15ULL;
 constexpr double kTrackMarginM = 0.5;
 constexpr std::uint64_t kTrailingSensors = 0x5bd1e995a7f3c2d1ULL;  // their noise is their own
+constexpr std::uint64_t kExtraSensors = 0xc2b2ae3d27d4eb4fULL;
 
 Truth instant_of(const TruckState& state) {
   return {state.deflection_m, state.velocity_mps, state.damping_force_n, state.restoring_force_n,
@@ -25,6 +26,17 @@ double pivot_distance_m(const SimulationConfig& config) {
 
 bool is_trailing(const SimulationConfig& config) {
   return config.vehicle && config.vehicle->instrumented == TruckPosition::kTrailing;
+}
+
+/// As the frame's.
+SensorConfig extra_config(const SensorConfig& sensors) {
+  SensorConfig out;
+  out.range_mps2.fill(sensors.range_mps2[0]);
+  out.noise_mps2 = sensors.noise_mps2;
+  out.bias_mps2 = sensors.bias_mps2;
+  out.drift_mps2 = sensors.drift_mps2;
+  out.drift_time_s = sensors.drift_time_s;
+  return out;
 }
 
 std::uint64_t sensor_seed(const SimulationConfig& config) {
@@ -56,6 +68,8 @@ Simulation::Simulation(const SimulationConfig& config)
   const double earliest = -std::min(0.0, std::ranges::min(skew));
   if (has_skew_) look_ahead_ = static_cast<std::int64_t>(std::ceil(earliest * kStepRateHz)) + 2;
   if (config.vehicle) vehicle_.emplace(*config.vehicle, config.truck);
+  if (config.extra_sensors)
+    extra_sensors_.emplace(extra_config(config.sensors), sensor_seed(config) ^ kExtraSensors);
   now_ = excitations(-config.settle_s, 0.0, speed_at(config.speed, -config.settle_s));
   for (std::int64_t i = 0; i < settle_steps_ + look_ahead_; ++i) step();
 }
@@ -86,6 +100,7 @@ Excitation Simulation::excitation(double position_m, const Speed& speed, bool fi
     }
     result.wheelset_mps2[i] =
         point.curvature_pm * speed.speed_mps * speed.speed_mps + point.slope * speed.accel_mps2;
+    result.wheelset_mps[i] = point.slope * speed.speed_mps;
   }
   return result;
 }
@@ -131,9 +146,29 @@ void Simulation::step() {
   moment.position_m = is_trailing(config_) ? position_m_ - pivot_distance_m(config_) : position_m_;
   const Truth& t = moment.instant;
   const auto& wheelset = end[instrumented_].wheelset_mps2;
-  moment.filtered =
-      anti_alias_.update({t.frame_mps2, wheelset[0], wheelset[1], t.deflection_m, t.velocity_mps,
-                          t.damping_force_n, t.restoring_force_n, t.frame_mps2});
+  const std::array<double, kExtras> extra = extras();
+  moment.filtered = anti_alias_.update({t.frame_mps2, wheelset[0], wheelset[1], t.deflection_m,
+                                        t.velocity_mps, t.damping_force_n, t.restoring_force_n,
+                                        t.frame_mps2, extra[0], extra[1]});
+}
+
+std::array<double, kExtras> Simulation::extras() const noexcept {
+  if (!vehicle_ || !extra_sensors_) return {};
+  const auto own = static_cast<TruckPosition>(instrumented_);
+  const auto other = static_cast<TruckPosition>(1 - instrumented_);
+  return {vehicle_->state(own).frame_mps2 + vehicle_->end_mps2(own),
+          vehicle_->state(other).frame_mps2};
+}
+
+void Simulation::sense_extras(const Signals& seen, SimulatedSample& sample) noexcept {
+  if (!extra_sensors_) return;
+  const auto counts = extra_sensors_->convert({seen[8], seen[9], 0.0}, sample.time_s);
+  for (std::size_t e = 0; e < kExtras; ++e) {
+    sample.extra_counts[e] = counts[e];
+    sample.extra_mps2[e] = counts[e] * count_scale_mps2(config_.sensors.range_mps2[0]);
+    if (counts[e] == kMaxCount || counts[e] == kMinCount)
+      sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << (kChannels + e)));
+  }
 }
 
 const Simulation::Moment& Simulation::past(std::int64_t steps) const noexcept {
@@ -170,6 +205,7 @@ SimulatedSample Simulation::next() {
       sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
     }
   }
+  sense_extras(seen, sample);
   sample.truth = {seen[3], seen[4], seen[5], seen[6], seen[7]};
   sample.instant = moment.instant;
   sample.speed_mps = moment.speed_mps;
@@ -189,10 +225,13 @@ double anti_alias_delay_s(const SensorConfig& config) noexcept {
 }
 
 Sample to_sample(const SimulatedSample& sample) noexcept {
-  return {.tick = sample.tick,
-          .time_ns = std::llround(sample.time_s * 1e9),
-          .accel_mps2 = sample.accel_mps2,
-          .saturated = sample.saturated};
+  Sample out{.tick = sample.tick,
+             .time_ns = std::llround(sample.time_s * 1e9),
+             .accel_mps2 = sample.accel_mps2,
+             .saturated = sample.saturated};
+  for (std::size_t e = 0; e < kExtras; ++e)
+    out.extra_mps2[e] = static_cast<float>(sample.extra_mps2[e]);
+  return out;
 }
 
 }  // namespace dampline::sim

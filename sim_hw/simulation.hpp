@@ -29,6 +29,9 @@ struct SimulationConfig {
   /// Share of a wheelset's power that the other wheelset never sees: contact off the centre of the
   /// rail, wheels that are not round.
   double incoherent_power{0.0};
+  /// Two more accelerometers, as the frame's and with noise of their own: on the frame over
+  /// wheelset 1, and on the other truck's frame. They need a vehicle.
+  bool extra_sensors{false};
   double settle_s{10.0};  ///< runs before time 0, so that the record begins in full motion
   /// The truck as one of two under a common body; needs Vehicle::supports(truck). A flat is then
   /// on the car's first wheelset, a shock hits the instrumented truck.
@@ -48,8 +51,10 @@ struct SimulatedSample {
   std::int64_t tick{0};  ///< 0 is time 0
   double time_s{0.0};    ///< tick / 300, the sampling instant
   std::array<std::int16_t, kChannels> counts{};
-  std::array<double, kChannels> accel_mps2{};  ///< counts times count_scale_mps2(range)
-  std::uint8_t saturated{0};                   ///< bit c: channel c stands at a full-scale code
+  std::array<double, kChannels> accel_mps2{};        ///< counts times count_scale_mps2(range)
+  std::array<std::int16_t, kExtras> extra_counts{};  ///< by Extra
+  std::array<double, kExtras> extra_mps2{};
+  std::uint8_t saturated{0};  ///< bit c: channel c stands at a full-scale code; then the extras
   Truth truth{};    ///< through the anti-alias filter of the channels, so at the same delay
   Truth instant{};  ///< at time_s itself, unfiltered
   double speed_mps{0.0};
@@ -63,7 +68,7 @@ class Simulation {
   [[nodiscard]] SimulatedSample next();
 
  private:
-  static constexpr std::size_t kSignals = 8;  // three accelerations, then Truth
+  static constexpr std::size_t kSignals = 10;  // three accelerations, Truth, extras
   using Signals = std::array<double, kSignals>;
   struct Moment {
     Signals filtered{};
@@ -78,6 +83,8 @@ class Simulation {
   [[nodiscard]] const TruckState& advance(const Excitations& middle, const Excitations& end,
                                           double time_s) noexcept;
   void step();
+  [[nodiscard]] std::array<double, kExtras> extras() const noexcept;
+  void sense_extras(const Signals& seen, SimulatedSample& sample) noexcept;
   [[nodiscard]] double skewed(std::size_t channel) const noexcept;
   [[nodiscard]] const Moment& past(std::int64_t steps) const noexcept;
 
@@ -90,6 +97,7 @@ class Simulation {
   Shocks shocks_;
   ButterworthLowPass<kSignals> anti_alias_;
   Sensors sensors_;
+  std::optional<Sensors> extra_sensors_;
   std::vector<Moment> history_;
   std::int64_t steps_{0};  // done, settling included
   std::int64_t settle_steps_{0};

@@ -32,6 +32,7 @@ struct TruckConfig {
 /// What moves the truck at one instant.
 struct Excitation {
   std::array<double, 2> wheelset_mps2{};
+  std::array<double, 2> wheelset_mps{};
   double force_n{0.0};  ///< on the frame, not measured by any sensor
 };
 
@@ -98,6 +99,7 @@ class Truck {
   for (std::size_t i = 0; i < 2; ++i) {
     e.wheelset_mps2[i] =
         wa * a.wheelset_mps2[i] + wm * m.wheelset_mps2[i] + wb * b.wheelset_mps2[i];
+    e.wheelset_mps[i] = wa * a.wheelset_mps[i] + wm * m.wheelset_mps[i] + wb * b.wheelset_mps[i];
   }
   e.force_n = wa * a.force_n + wm * m.force_n + wb * b.force_n;
   return e;

@@ -23,10 +23,12 @@ Vehicle::Excitations between(const Vehicle::Excitations& a, const Vehicle::Excit
 }  // namespace
 
 VehicleMasses masses_of(const VehicleConfig& vehicle, const TruckConfig& truck) noexcept {
-  const double ratio = vehicle.gyration_radius_m / vehicle.half_pivot_distance_m;
+  const double radius = vehicle.gyration_radius_m / vehicle.half_pivot_distance_m;
+  const double height = vehicle.centre_height_m / vehicle.half_pivot_distance_m;
+  const double ratio = radius * radius + height * height;
   const double half_body_kg = truck.moving_mass_kg - vehicle.frame_mass_kg;
-  return {.own_kg = vehicle.frame_mass_kg + 0.5 * half_body_kg * (1.0 + ratio * ratio),
-          .other_kg = 0.5 * half_body_kg * (1.0 - ratio * ratio)};
+  return {.own_kg = vehicle.frame_mass_kg + 0.5 * half_body_kg * (1.0 + ratio),
+          .other_kg = 0.5 * half_body_kg * (1.0 - ratio)};
 }
 
 bool Vehicle::supports(const TruckConfig& truck) noexcept {
@@ -37,7 +39,9 @@ bool Vehicle::supports(const TruckConfig& truck) noexcept {
 Vehicle::Vehicle(const VehicleConfig& vehicle, const TruckConfig& truck)
     : truck_(truck),
       bounce_kg_(truck.moving_mass_kg),
-      pitch_kg_(masses_of(vehicle, truck).own_kg - masses_of(vehicle, truck).other_kg) {}
+      pitch_kg_(masses_of(vehicle, truck).own_kg - masses_of(vehicle, truck).other_kg),
+      half_pivot_distance_m_(vehicle.half_pivot_distance_m),
+      pitch_damping_nms_(truck.modes.pitch_inertia_kgm2 > 0.0 ? vehicle.pitch_damping_nms : 0.0) {}
 
 void Vehicle::set_motion(const std::array<TruckMotion, 2>& motion) noexcept {
   motion_ = motion;
@@ -70,6 +74,24 @@ Vehicle::Force Vehicle::suspension(const TruckMotion& at, const Excitation& exci
           0.5 * (first.restoring_n + second.restoring_n)};
 }
 
+double Vehicle::damp_pitch(const Motion& at, const Excitations& excitation,
+                           Motion& rates) const noexcept {
+  const double arm = truck_.modes.pitch_half_wheelbase_m;
+  std::array<double, 2> height_mps{};  // of the pivots
+  std::array<double, 2> pitch_ps{};    // of the frames
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& wheelset = excitation[i].wheelset_mps;
+    height_mps[i] = 0.5 * (at[i].velocity_mps + wheelset[0] + wheelset[1]);
+    pitch_ps[i] = (at[i].pitch_rate_mps + 0.5 * (wheelset[0] - wheelset[1])) / arm;
+  }
+  const double body_ps = 0.5 * (height_mps[0] - height_mps[1]) / half_pivot_distance_m_;
+  const double per_frame = pitch_damping_nms_ * arm / truck_.modes.pitch_inertia_kgm2;
+  for (std::size_t i = 0; i < 2; ++i)
+    rates[i].pitch_rate_mps -= per_frame * (pitch_ps[i] - body_ps);
+  return -0.5 * pitch_damping_nms_ / half_pivot_distance_m_ *
+         (2.0 * body_ps - pitch_ps[0] - pitch_ps[1]);
+}
+
 Vehicle::Motion Vehicle::rate(const Motion& at, const Excitations& excitation) noexcept {
   Motion rates{};
   std::array<Force, 2> total{};
@@ -78,6 +100,11 @@ Vehicle::Motion Vehicle::rate(const Motion& at, const Excitations& excitation) n
     total[i] = suspension(at[i], excitation[i], rates[i]);
     push[i] = excitation[i].force_n - total[i].sum();
   }
+  if (pitch_damping_nms_ > 0.0) {
+    const double damped = damp_pitch(at, excitation, rates);
+    push[0] += damped;
+    push[1] -= damped;
+  }
   const double together = 0.5 * (push[0] + push[1]) / bounce_kg_;
   const double against = 0.5 * (push[0] - push[1]) / pitch_kg_;
   const std::array<double, 2> frame{together + against, together - against};
@@ -85,6 +112,7 @@ Vehicle::Motion Vehicle::rate(const Motion& at, const Excitations& excitation) n
     const auto& wheelset = excitation[i].wheelset_mps2;
     rates[i].deflection_m = at[i].velocity_mps;
     rates[i].velocity_mps = 2.0 * frame[i] - wheelset[0] - wheelset[1];
+    end_mps2_[i] = rates[i].pitch_rate_mps + 0.5 * (wheelset[0] - wheelset[1]);
     seen_[i] = {at[i].deflection_m, at[i].velocity_mps, frame[i], total[i].damping_n,
                 total[i].restoring_n};
   }
@@ -119,6 +147,7 @@ int Vehicle::parts_of(double step_s) const noexcept {
   if (truck_.modes.pitch_inertia_kgm2 > 0.0) {
     const double arm = truck_.modes.pitch_half_wheelbase_m;
     fastest += 2.0 * slope * arm * arm / truck_.modes.pitch_inertia_kgm2;
+    fastest += pitch_damping_nms_ / truck_.modes.pitch_inertia_kgm2;
   }
   return std::clamp(static_cast<int>(std::ceil(fastest * step_s)), 1, 64);
 }

@@ -11,17 +11,22 @@ namespace dampline::sim {
 enum class TruckPosition : std::uint8_t { kLeading, kTrailing };
 
 /// A four-axle freight car in its vertical plane: a rigid body on two trucks, four degrees of
-/// freedom (Kisilowski and Urbanski 1987, equation 1, as far as its reduction to equation 2 tells):
-/// bounce z and pitch phi of the body, pitch theta of each frame.
+/// freedom (Kisilowski and Urbanski 1987, equation 1): bounce z and pitch phi of the body, pitch
+/// theta of each frame.
 ///
 /// A truck without secondary springs (Y25) carries the body on a centre plate, which leaves it
-/// pitch but no way up or down. So the frame i moves with the body, z_bi = z +- l phi, and M =
-/// m_frame + m_body / 2 of TruckConfig holds for bounce:
-///   m_frame z_b1'' + P_1 = -S_1,   m_body z'' = P_1 + P_2,   J phi'' = l (P_1 - P_2)
-/// with S the suspension's force and P that of the centre plate; J = m_body radius^2. Hence
+/// pitch but no way up or down. So the frame i moves with the body, z_bi = z +- l phi:
+///   m_frame z_b1'' + P_1 = -S_1,   m_body z'' = P_1 + P_2,
+///   (m_body radius^2 + m_body h^2) phi'' = l (P_1 - P_2) - c (2 phi' - theta_1' - theta_2'),
+///   I theta_i'' = -T_i - c (theta_i' - phi')
+/// with S and T the suspension's force and moment, P the force of the centre plate and c the
+/// damping between body and frame pitch; the body's middle, h above the pivots, goes to and fro as
+/// it pitches. Hence, without c,
 ///   M_own z_b1'' + M_other z_b2'' = -S_1,   and the same with 1 and 2 exchanged,
-///   M_own = m_frame + m_body (1 + r) / 4,   M_other = m_body (1 - r) / 4,   r = (radius / l)^2.
-/// The trucks are apart, each with equation 2 and M, only for r = 1.
+///   M_own = m_frame + m_body (1 + r) / 4,   M_other = m_body (1 - r) / 4,
+///   r = (radius^2 + h^2) / l^2,
+/// and M_own + M_other = m_frame + m_body / 2, M of TruckConfig, is the mass of bounce alone. The
+/// trucks are apart, each with equation 2 and M, only for r = 1 and c = 0.
 ///
 /// Stiffness, friction and their effects are those of TruckConfig, each truck alike; both act at
 /// each wheelset, as in ModeEffects, where its pitch inertia is above zero. Without inertia a frame
@@ -31,6 +36,8 @@ struct VehicleConfig {
   double frame_mass_kg{2200.0};
   double gyration_radius_m{3.7};      ///< of the body about its pitch axis
   double half_pivot_distance_m{4.5};  ///< l
+  double centre_height_m{0.0};        ///< h, of the body's middle over the pivots
+  double pitch_damping_nms{0.0};      ///< c, N m s; of frames that have inertia
   TruckPosition instrumented{TruckPosition::kLeading};
 };
 inline constexpr double kFramePitchInertiaKgm2 = 1500.0;
@@ -65,6 +72,10 @@ class Vehicle {
   [[nodiscard]] const TruckMotion& motion(TruckPosition position) const noexcept {
     return motion_[static_cast<std::size_t>(position)];
   }
+  /// a theta'': what the frame's end over the truck's first wheelset has more than its middle.
+  [[nodiscard]] double end_mps2(TruckPosition position) const noexcept {
+    return end_mps2_[static_cast<std::size_t>(position)];
+  }
   /// For free vibrations.
   void set_motion(const std::array<TruckMotion, 2>& motion) noexcept;
 
@@ -79,6 +90,10 @@ class Vehicle {
   [[nodiscard]] Force suspension(const TruckMotion& at, const Excitation& excitation,
                                  TruckMotion& rates) const noexcept;
   [[nodiscard]] Motion rate(const Motion& at, const Excitations& excitation) noexcept;
+  /// Adds the damping between body and frames to the frames' pitch; returns its push on the leading
+  /// pivot, against the trailing one's.
+  [[nodiscard]] double damp_pitch(const Motion& at, const Excitations& excitation,
+                                  Motion& rates) const noexcept;
   void part(const Excitations& start, const Excitations& middle, const Excitations& end,
             double step_s) noexcept;
   [[nodiscard]] int parts_of(double step_s) const noexcept;
@@ -86,7 +101,10 @@ class Vehicle {
   TruckConfig truck_;
   double bounce_kg_;  // of one truck when both move alike: M
   double pitch_kg_;   // when they move against each other
+  double half_pivot_distance_m_;
+  double pitch_damping_nms_;
   Motion motion_{};
+  std::array<double, 2> end_mps2_{};
   std::array<TruckState, 2> seen_{};
 };
 

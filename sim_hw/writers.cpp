@@ -4,10 +4,12 @@
 #include <iterator>
 
 namespace dampline::sim {
-void append_csv(TextBuffer& text, const SimulatedSample& sample) {
+void append_csv(TextBuffer& text, const SimulatedSample& sample, bool extras) {
   const auto& a = sample.accel_mps2;
-  fmt::format_to(std::back_inserter(text), "{:.9f},{:.6f},{:.6f},{:.6f}\n", sample.time_s, a[0],
-                 a[1], a[2]);
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "{:.9f},{:.6f},{:.6f},{:.6f}", sample.time_s, a[0], a[1], a[2]);
+  if (extras) fmt::format_to(out, ",{:.6f},{:.6f}", sample.extra_mps2[0], sample.extra_mps2[1]);
+  text.push_back('\n');
 }
 
 std::string truth_header(const SimulationConfig& config) {

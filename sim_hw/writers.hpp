@@ -14,8 +14,11 @@ using TextBuffer = fmt::memory_buffer;
 
 inline constexpr std::string_view kSampleHeader =
     "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
-/// One row of the canonical CSV.
-void append_csv(TextBuffer& text, const SimulatedSample& sample);
+inline constexpr std::string_view kExtrasHeader =
+    "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2,frame_end_accel_mps2,"
+    "far_frame_accel_mps2\n";
+/// One row of the canonical CSV, with the extra sensors or without.
+void append_csv(TextBuffer& text, const SimulatedSample& sample, bool extras = false);
 
 /// The parameters of the run as comment lines, then the header of the truth columns.
 [[nodiscard]] std::string truth_header(const SimulationConfig& config);

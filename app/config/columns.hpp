@@ -19,8 +19,10 @@ enum class Column : std::uint8_t {
   kVelocity,
   kForce,
   kAccel,  ///< second derivative of the deflection, measured beside it
+  kFrameEndAccel,
+  kFarFrameAccel,
 };
-inline constexpr std::size_t kColumns = 8;
+inline constexpr std::size_t kColumns = 10;
 
 /// Canonical header names, indexed by Column.
 inline constexpr std::array<std::string_view, kColumns> kColumnNames{"time_s",
@@ -30,7 +32,9 @@ inline constexpr std::array<std::string_view, kColumns> kColumnNames{"time_s",
                                                                      "deflection_m",
                                                                      "velocity_mps",
                                                                      "force_n",
-                                                                     "accel_mps2"};
+                                                                     "accel_mps2",
+                                                                     "frame_end_accel_mps2",
+                                                                     "far_frame_accel_mps2"};
 
 [[nodiscard]] constexpr std::size_t index(Column column) noexcept {
   return static_cast<std::size_t>(column);

@@ -12,18 +12,25 @@
 namespace dampline::app {
 
 struct CarConfig {
-  double moving_mass_kg{37200.0};                  ///< truck frame and its share of the body
+  double moving_mass_kg{37200.0};             ///< truck frame and its share of the body
+  std::optional<double> far_mass_kg;          ///< of the body at the other truck; absent: no sensor
+  std::optional<double> frame_pitch_mass_kg;  ///< I / a^2 of the frame; absent: no sensor
   std::optional<double> suspension_stiffness_npm;  ///< start value; absent: unknown
   std::optional<double> wheelbase_m;               ///< of the truck; absent: unknown
+  /// By Extra: the accelerometers that the masses ask for.
+  [[nodiscard]] std::array<bool, kExtras> extras() const {
+    return {frame_pitch_mass_kg.has_value(), far_mass_kg.has_value()};
+  }
 };
 
 /// Frames on a bus or in a candump log. A signal is MESSAGE.SIGNAL of the DBC file.
 struct CanConfig {
   std::string dbc;  ///< path, relative to the configuration file; empty: the project's own sensors
-  std::array<std::string, kChannels> accel{};    ///< indexed by Channel; empty: the project's own
-  std::array<std::string, kChannels> counter{};  ///< empty: found in the accel's message by name
-  std::string interface;                         ///< empty: every interface of the log
-  int receive_buffer_kib{4096};                  ///< of a live interface's socket
+  std::array<std::string, kChannels> accel{};      ///< indexed by Channel; empty: the project's own
+  std::array<std::string, kExtras> extra_accel{};  ///< by Extra; empty: the project's own
+  std::array<std::string, kChannels> counter{};    ///< empty: found in the accel's message by name
+  std::string interface;                           ///< empty: every interface of the log
+  int receive_buffer_kib{4096};                    ///< of a live interface's socket
 };
 
 /// Anti-aliasing filter of the sensors: a Butterworth low-pass, the same in every channel.

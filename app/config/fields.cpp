@@ -38,6 +38,7 @@ constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
 constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::array<std::string_view, kChannels> kAccelKeys{"frame_accel", "wheelset1_accel",
                                                              "wheelset2_accel"};
+constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end_accel", "far_frame_accel"};
 constexpr std::array<std::string_view, kChannels> kCounterKeys{"frame_counter", "wheelset1_counter",
                                                                "wheelset2_counter"};
 
@@ -46,6 +47,12 @@ using Fields = std::vector<Field>;
 void add_car(CarConfig& car, Fields& out) {
   out.push_back({"car", "moving_mass_kg", "truck frame and its share of the body",
                  NumberField{&car.moving_mass_kg, {1.0, 1e6}}});
+  out.push_back({"car", "far_mass_kg",
+                 "body's mass at the other truck; with it, far_frame_accel is wanted",
+                 OptionalNumberField{&car.far_mass_kg, {1.0, 1e6}, ""}});
+  out.push_back({"car", "frame_pitch_mass_kg",
+                 "I / a^2 of the frame's pitch; with it, frame_end_accel is wanted",
+                 OptionalNumberField{&car.frame_pitch_mass_kg, {1.0, 1e6}, ""}});
   out.push_back({"car", "suspension_stiffness_npm", "start value, identified too; absent: unknown",
                  OptionalNumberField{&car.suspension_stiffness_npm, {1.0, 1e12}, ""}});
   out.push_back({"car", "wheelbase_m", "of the truck, for the guards; absent: unknown",
@@ -58,6 +65,9 @@ void add_can(CanConfig& can, Fields& out) {
   for (std::size_t c = 0; c < kChannels; ++c)
     out.push_back({"input.can", kAccelKeys[c], "MESSAGE.SIGNAL of the DBC file, in m/s^2",
                    TextField{&can.accel[c], {}}});
+  for (std::size_t e = 0; e < kExtras; ++e)
+    out.push_back({"input.can", kExtraKeys[e], "of a fourth and fifth accelerometer, see [car]",
+                   TextField{&can.extra_accel[e], {}}});
   for (std::size_t c = 0; c < kChannels; ++c)
     out.push_back({"input.can", kCounterKeys[c], "sample counter; empty: found by its name",
                    TextField{&can.counter[c], {}}});

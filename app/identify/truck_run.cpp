@@ -61,6 +61,7 @@ IdentifierConfig core_config(const Config& config, const RecordSignals& signals)
   out.estimator = estimator_config(config);
   out.estimator.screen = signals.screen;
   out.signals = signals.channels;
+  out.extra_signals = signals.extras;
   for (std::size_t c = 0; c < kChannels; ++c)
     out.guard.noise_mps2[c] = config.input.noise_mps2[c].value_or(0.0);
   out.guard.wheelbase_m = config.car.wheelbase_m.value_or(0.0);
@@ -78,6 +79,8 @@ EstimatorConfig estimator_config(const Config& config) {
   EstimatorConfig core;
   core.sample_rate_hz = truck_rate_hz(config.input);
   core.moving_mass_kg = config.car.moving_mass_kg;
+  core.far_mass_kg = config.car.far_mass_kg.value_or(0.0);
+  core.frame_pitch_mass_kg = config.car.frame_pitch_mass_kg.value_or(0.0);
   core.velocity_corner_hz = config.model.velocity_corner_hz.value_or(0.0);
   core.anti_alias = {config.input.anti_alias.corner_hz, config.input.anti_alias.order};
   const auto& nodes = config.model.curve_nodes_mps;

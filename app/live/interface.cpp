@@ -31,6 +31,8 @@ std::unique_ptr<drivers::SocketCanSource> open_bus(const Config& config,
   bus.interface = interface;
   for (const ChannelConfig& channel : assembler.channels)
     bus.identifiers.push_back({channel.id, channel.extended});
+  for (const std::optional<ChannelConfig>& extra : assembler.extras)
+    if (extra) bus.identifiers.push_back({extra->id, extra->extended});
   bus.receive_buffer_bytes = static_cast<int>(config.input.can.receive_buffer_kib * kKib);
   bus.run_time = run_time;
   const auto link = drivers::read_link(interface);

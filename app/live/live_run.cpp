@@ -32,7 +32,7 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       parts_{parts},
       options_{options},
       outlets_{std::move(outlets)},
-      truck_{config, {assembler.channels, screen_of(assembler.channels)}},
+      truck_{config, {assembler.channels, screen_of(assembler.channels), assembler.extras}},
       explainer_{config, truck_},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},

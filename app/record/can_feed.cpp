@@ -21,7 +21,10 @@ template <class Source>
 class CanFeed final : public SampleFeed {
  public:
   CanFeed(const Config& config, std::unique_ptr<Source> source, const AssemblerConfig& assembler)
-      : dbc_{config.input.can.dbc}, source_{std::move(source)}, wanted_{assembler.channels} {}
+      : dbc_{config.input.can.dbc},
+        source_{std::move(source)},
+        wanted_{assembler.channels},
+        extras_{assembler.extras} {}
 
   Batch read() override {
     const auto count = source_->read(frames_);
@@ -32,7 +35,9 @@ class CanFeed final : public SampleFeed {
     if (!count.ok()) return {.more = false};
     return {.frames = std::span{frames_}.first(count.value())};
   }
-  [[nodiscard]] RecordSignals signals() const override { return {wanted_, screen_of(wanted_)}; }
+  [[nodiscard]] RecordSignals signals() const override {
+    return {wanted_, screen_of(wanted_), extras_};
+  }
   [[nodiscard]] std::uint64_t lines() const override {
     if constexpr (requires { source_->line_number(); }) return source_->line_number();
     return 0;
@@ -53,6 +58,7 @@ class CanFeed final : public SampleFeed {
   std::string dbc_;
   std::unique_ptr<Source> source_;
   std::array<ChannelConfig, kChannels> wanted_;
+  ExtraSignals extras_;
   std::array<CanFrame, kFrameBatch> frames_{};
   EventList events_;
 };

@@ -28,8 +28,11 @@ int checked_factor(double rate_hz) {
 
 class CsvFeed final : public SampleFeed {
  public:
-  CsvFeed(const InputConfig& input, const SourceOptions& source)
-      : input_{input}, rows_{input, source}, decimator_{checked_factor(input.sample_rate_hz)} {
+  CsvFeed(const InputConfig& input, const std::array<bool, kExtras>& extras,
+          const SourceOptions& source)
+      : input_{input},
+        rows_{input, extras, source},
+        decimator_{checked_factor(input.sample_rate_hz)} {
     if (decimator_.factor() > 1) raw_screen_.emplace(raw_screen());
     const double first_hz = rows_.first_rate_hz();
     static_cast<void>(
@@ -95,6 +98,11 @@ class CsvFeed final : public SampleFeed {
       if (input_.range_mps2[c] && std::fabs(row[c + 1]) >= *input_.range_mps2[c])
         sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
     }
+    for (std::size_t e = 0; e < kExtras; ++e) {
+      const double accel_mps2 = row[1 + kChannels + e];
+      sample.extra_mps2[e] = static_cast<float>(accel_mps2);
+      if (!std::isfinite(accel_mps2)) sample.accel_mps2[0] = accel_mps2;  // the whole row is none
+    }
     return sample;
   }
 
@@ -110,7 +118,7 @@ class CsvFeed final : public SampleFeed {
 }  // namespace
 
 std::unique_ptr<SampleFeed> open_csv_feed(const Config& config, const SourceOptions& source) {
-  return std::make_unique<CsvFeed>(config.input, source);
+  return std::make_unique<CsvFeed>(config.input, config.car.extras(), source);
 }
 
 }  // namespace dampline::app

@@ -25,6 +25,7 @@ namespace dampline::app {
 struct RecordSignals {
   std::array<ChannelConfig, kChannels> channels{};
   ScreenConfig screen{};  ///< its rate is the configuration's
+  ExtraSignals extras{};
 };
 
 /// What a source handed over: frames to be decoded, or samples as rows hold them. Valid until the

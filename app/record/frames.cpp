@@ -21,19 +21,21 @@ namespace {
 
 constexpr std::array<std::string_view, kChannels> kKeys{"frame", "wheelset1", "wheelset2"};
 
-std::string default_signal(std::size_t channel) {
-  return fmt::format("{}.ACCEL_Z", sim::kMessageNames[channel]);
-}
+constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end", "far_frame"};
+
+std::string default_signal(std::string_view message) { return fmt::format("{}.ACCEL_Z", message); }
 
 drivers::Dbc open_dbc(const std::string& path) {
-  auto dbc = path.empty() ? drivers::parse_dbc(sim::dbc_text({}, {}), "the project's own sensors")
-                          : drivers::load_dbc(path);
+  auto dbc = path.empty()
+                 ? drivers::parse_dbc(sim::dbc_text({}, {}, true), "the project's own sensors")
+                 : drivers::load_dbc(path);
   if (!dbc.ok()) throw UsageError{fmt::format("[input.can] dbc: {}", dbc.error_text())};
   return std::move(dbc.value());
 }
 
 ChannelConfig channel(const drivers::Dbc& dbc, const InputConfig& input, std::size_t c) {
-  const std::string signal = input.can.accel[c].empty() ? default_signal(c) : input.can.accel[c];
+  const std::string signal =
+      input.can.accel[c].empty() ? default_signal(sim::kMessageNames[c]) : input.can.accel[c];
   auto found = drivers::channel_from(dbc, signal, input.can.counter[c]);
   if (!found.ok())
     throw UsageError{fmt::format("[input.can] {}_accel: {}", kKeys[c], found.error_text())};
@@ -43,6 +45,15 @@ ChannelConfig channel(const drivers::Dbc& dbc, const InputConfig& input, std::si
     result.accel.maximum = *range;
   }
   return result;
+}
+
+ChannelConfig extra(const drivers::Dbc& dbc, const InputConfig& input, std::size_t e) {
+  const std::string& named = input.can.extra_accel[e];
+  const std::string signal = named.empty() ? default_signal(sim::kExtraMessageNames[e]) : named;
+  auto found = drivers::channel_from(dbc, signal, "");
+  if (!found.ok())
+    throw UsageError{fmt::format("[input.can] {}_accel: {}", kExtraKeys[e], found.error_text())};
+  return found.value();
 }
 
 }  // namespace
@@ -57,6 +68,9 @@ AssemblerConfig can_channels(const Config& config) {
   AssemblerConfig assembler;
   assembler.sample_rate_hz = config.input.sample_rate_hz;
   for (std::size_t c = 0; c < kChannels; ++c) assembler.channels[c] = channel(dbc, config.input, c);
+  const auto wanted = config.car.extras();
+  for (std::size_t e = 0; e < kExtras; ++e)
+    if (wanted[e]) assembler.extras[e] = extra(dbc, config.input, e);
   if (!SampleAssembler::check(assembler).ok())
     throw UsageError{
         fmt::format("[input.can]: the signals of {} cannot be assembled at {} Hz: one lies "

@@ -13,14 +13,22 @@ namespace {
 constexpr std::size_t kWidth = std::tuple_size_v<TruckRows::Row>;
 constexpr std::size_t kRowBatch = 512;
 constexpr std::size_t kFirstRows = 2000;
-constexpr std::array<Column, kWidth> kRowColumns{Column::kTime, Column::kFrameAccel,
-                                                 Column::kWheelset1Accel, Column::kWheelset2Accel};
+constexpr std::array<Column, kWidth> kRowColumns{Column::kTime,           Column::kFrameAccel,
+                                                 Column::kWheelset1Accel, Column::kWheelset2Accel,
+                                                 Column::kFrameEndAccel,  Column::kFarFrameAccel};
 
 }  // namespace
 
-TruckRows::TruckRows(const InputConfig& input, const SourceOptions& source)
-    : reader_{open_csv(input, source, kRowColumns, {})} {
-  for (std::size_t i = 0; i < kWidth; ++i) scale_[i] = input.scale[index(kRowColumns[i])];
+TruckRows::TruckRows(const InputConfig& input, const std::array<bool, kExtras>& extras,
+                     const SourceOptions& source) {
+  std::vector<Column> wanted;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    scale_[i] = input.scale[index(kRowColumns[i])];
+    if (i > kChannels && !extras[i - kChannels - 1]) continue;
+    places_.push_back(i);
+    wanted.push_back(kRowColumns[i]);
+  }
+  reader_ = open_csv(input, source, wanted, {});
   while (first_.size() < kFirstRows && read_batch(first_)) {
   }
 }
@@ -52,12 +60,14 @@ bool TruckRows::read(std::vector<Row>& out) {
 }
 
 bool TruckRows::read_batch(std::vector<Row>& out) {
-  values_.resize(kWidth * kRowBatch);
+  const std::size_t width = places_.size();
+  values_.resize(width * kRowBatch);
   const auto count = reader_->read(values_);
   if (!count.ok() && count.error() != Errc::kEndOfStream) throw RunError{reader_->error_text()};
   for (std::size_t row = 0; count.ok() && row < count.value(); ++row) {
     Row& scaled = out.emplace_back();
-    for (std::size_t i = 0; i < kWidth; ++i) scaled[i] = scale_[i] * values_[kWidth * row + i];
+    for (std::size_t i = 0; i < width; ++i)
+      scaled[places_[i]] = scale_[places_[i]] * values_[width * row + i];
   }
   return count.ok();
 }

@@ -16,13 +16,14 @@
 
 namespace dampline::app {
 
-/// Rows of a CSV file with a truck's time (s) and three accelerations (m/s^2). Throws RunError with
-/// file and line.
+/// Rows of a CSV file with a truck's time (s), three accelerations and those of the extras that are
+/// wanted (m/s^2; else 0). Throws RunError with file and line.
 class TruckRows {
  public:
-  using Row = std::array<double, 1 + kChannels>;
+  using Row = std::array<double, 1 + kChannels + kExtras>;
 
-  TruckRows(const InputConfig& input, const SourceOptions& source);
+  TruckRows(const InputConfig& input, const std::array<bool, kExtras>& extras,
+            const SourceOptions& source);
 
   /// The record's own rate by the time of its first rows, which are still handed on; 0: too few.
   [[nodiscard]] double first_rate_hz() const;
@@ -33,6 +34,7 @@ class TruckRows {
  private:
   bool read_batch(std::vector<Row>& out);
 
+  std::vector<std::size_t> places_;  // in a row, of the columns that are read
   Row scale_{};
   std::unique_ptr<drivers::CsvReader> reader_;
   std::vector<double> values_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -63,7 +64,8 @@ void check_files(const SimulateOptions& options, const SimulatedRun& run, bool c
 void write_side_files(const SimulateOptions& options, const SimulatedRun& run) {
   namespace fs = std::filesystem;
   if (!options.dbc.empty()) {
-    write_text(options.dbc, sim::dbc_text(run.simulation.sensors, run.nodes));
+    write_text(options.dbc,
+               sim::dbc_text(run.simulation.sensors, run.nodes, run.simulation.extra_sensors));
   }
   if (options.config.empty()) return;
   std::string dbc;
@@ -77,22 +79,25 @@ void write_side_files(const SimulateOptions& options, const SimulatedRun& run) {
 std::uint64_t write_record(const SimulateOptions& options, const SimulatedRun& run, bool csv) {
   TextFile record{options.out};
   TruthFile truth{options.truth, run.simulation};
-  if (csv) record.buffer().append(sim::kSampleHeader);
+  const bool extras = run.simulation.extra_sensors;
+  if (csv) record.buffer().append(extras ? sim::kExtrasHeader : sim::kSampleHeader);
   sim::Simulation simulation{run.simulation};
   sim::SensorNodes nodes{run.nodes, run.simulation.seed};
   sim::Transport transport{run.transport, run.simulation.seed};
   const SimulateProgress progress{run.samples, options.quiet};
   std::uint64_t lines = 0;
+  const auto write = [&](const CanFrame& frame) {
+    drivers::append_candump(record.buffer(), frame, options.interface);
+    ++lines;
+  };
   for (std::int64_t i = 0; i < run.samples; ++i) {
     const sim::SimulatedSample sample = simulation.next();
     if (csv) {
-      sim::append_csv(record.buffer(), sample);
+      sim::append_csv(record.buffer(), sample, extras);
       ++lines;
     } else {
-      for (const CanFrame& frame : transport.pass(nodes.pack(sample), sample.time_s)) {
-        drivers::append_candump(record.buffer(), frame, options.interface);
-        ++lines;
-      }
+      std::ranges::for_each(transport.pass(nodes.pack(sample), sample.time_s), write);
+      if (extras) std::ranges::for_each(nodes.pack_extras(sample), write);
     }
     record.tick();
     truth.append(sample);
@@ -161,6 +166,9 @@ void add_car_flags(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--vehicle", options.vehicle,
                   "leading or trailing: this truck of a whole car (body and two trucks, four "
                   "degrees of freedom); without it a truck alone");
+  verb.add_flag("--extra-sensors", options.extra_sensors,
+                "with --vehicle: two more accelerometers, over the frame's first wheelset and on "
+                "the other truck's frame");
   verb.add_option("--standstill", options.standstill_s, "START,END in seconds (repeatable)")
       ->delimiter(',')
       ->expected(2, 2 * static_cast<int>(sim::kMostStandstills))

@@ -20,6 +20,7 @@ struct SimulateOptions {
   double short_wave_mps2{2.0};
   double friction_scale{1.0};
   std::string vehicle;               ///< "leading" or "trailing" truck of a whole car; empty: alone
+  bool extra_sensors{false};         ///< of a vehicle: frame end and the other truck's frame
   std::vector<double> standstill_s;  ///< start and end of each
   std::vector<double> speed_change;  ///< seconds and km/h, or nothing
   double noise_mps2{0.02};

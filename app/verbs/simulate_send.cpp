@@ -33,7 +33,8 @@ class Batches {
         transport_{run.transport, run.simulation.seed},
         truth_{options.truth, run.simulation},
         most_{options.batch_ticks},
-        left_{run.samples} {
+        left_{run.samples},
+        extras_{run.simulation.extra_sensors} {
     frames_.reserve(static_cast<std::size_t>(most_) * sim::kMaxFramesPerTick);
   }
   /// False: the run is over.
@@ -44,6 +45,10 @@ class Batches {
       const sim::SimulatedSample sample = simulation_.next();
       const auto arrived = transport_.pass(nodes_.pack(sample), sample.time_s);
       frames_.insert(frames_.end(), arrived.begin(), arrived.end());
+      if (extras_) {
+        const auto more = nodes_.pack_extras(sample);
+        frames_.insert(frames_.end(), more.begin(), more.end());
+      }
       truth_.append(sample);
     }
     left_ -= ticks;
@@ -60,6 +65,7 @@ class Batches {
   TruthFile truth_;
   std::int64_t most_;
   std::int64_t left_;
+  bool extras_;
   std::vector<CanFrame> frames_;
 };
 

@@ -78,7 +78,12 @@ void set_speed(const SimulateOptions& options, sim::SpeedConfig& speed) {
 }
 
 void set_vehicle(const SimulateOptions& options, sim::SimulationConfig& config) {
-  if (options.vehicle.empty()) return;
+  if (options.vehicle.empty()) {
+    if (options.extra_sensors)
+      throw UsageError("--extra-sensors: a truck alone, expected --vehicle too");
+    return;
+  }
+  config.extra_sensors = options.extra_sensors;
   const bool leading = choose("--vehicle", options.vehicle, "leading", "trailing");
   config.vehicle.emplace().instrumented =
       leading ? sim::TruckPosition::kLeading : sim::TruckPosition::kTrailing;
@@ -121,13 +126,30 @@ SimulatedRun make_simulated_run(const SimulateOptions& options) {
   return run;
 }
 
+namespace {
+
+/// Masses of the reduction to one truck: of a whole car that which moves with this truck alone.
+std::string car_text(const sim::SimulationConfig& simulation) {
+  const sim::TruckConfig& truck = simulation.truck;
+  const sim::VehicleMasses masses = simulation.vehicle
+                                        ? sim::masses_of(*simulation.vehicle, truck)
+                                        : sim::VehicleMasses{truck.moving_mass_kg, 0.0};
+  std::string text = fmt::format("[car]\nmoving_mass_kg = {:.1f}\n", masses.own_kg);
+  if (simulation.extra_sensors) {
+    const double arm_m = truck.modes.pitch_half_wheelbase_m;
+    text += fmt::format("far_mass_kg = {:.1f}\nframe_pitch_mass_kg = {:.1f}\n", masses.other_kg,
+                        truck.modes.pitch_inertia_kgm2 / (arm_m * arm_m));
+  }
+  return text + fmt::format("suspension_stiffness_npm = {:.1f}\n", truck.stiffness_npm);
+}
+
+}  // namespace
+
 std::string identify_config_text(const SimulatedRun& run, const std::string& dbc) {
-  const sim::TruckConfig& truck = run.simulation.truck;
   const auto& range = run.simulation.sensors.range_mps2;
-  std::string text = fmt::format(
-      "[car]\nmoving_mass_kg = {:.1f}\nsuspension_stiffness_npm = {:.1f}\n\n"
-      "[input]\nsample_rate_hz = {:.1f}\n\n[input.can]\n",
-      truck.moving_mass_kg, truck.stiffness_npm, static_cast<double>(sim::kSampleRateHz));
+  std::string text =
+      car_text(run.simulation) + fmt::format("\n[input]\nsample_rate_hz = {:.1f}\n\n[input.can]\n",
+                                             static_cast<double>(sim::kSampleRateHz));
   if (!dbc.empty()) {
     std::string quoted;
     for (const char c : dbc) {

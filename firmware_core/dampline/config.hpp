@@ -9,6 +9,7 @@
 #include "dampline/estimate/block_store.hpp"
 #include "dampline/guard/config.hpp"
 #include "dampline/motion/anti_alias.hpp"
+#include "dampline/sample/assembler.hpp"
 #include "dampline/sample/channel.hpp"
 #include "dampline/sample/screen.hpp"
 #include "dampline/snapshot.hpp"
@@ -19,6 +20,12 @@ namespace dampline {
 struct EstimatorConfig {
   double sample_rate_hz{300.0};    ///< 150...400
   double moving_mass_kg{37200.0};  ///< truck frame and its share of the body; scales every force
+  /// J = I / a^2 of a frame that pitches: its inertia and half its wheelbase; of samples that have
+  /// Extra::kFrameEnd. 0: they have not.
+  double frame_pitch_mass_kg{0.0};
+  /// M_other in M z_b'' + M_other z_far'' + k y + F = 0, the body's mass at the other truck's
+  /// pivot, felt at this one; of samples that have Extra::kFarFrame. 0: they have not.
+  double far_mass_kg{0.0};
   /// 0.7 or 1.0: what is slower is not velocity but drift. 0: chosen once, from the sensors' noise.
   double velocity_corner_hz{0.0};
   std::array<double, kCurveSegments> curve_nodes_mps{kDefaultCurveNodesMps};
@@ -33,7 +40,9 @@ struct EstimatorConfig {
 struct IdentifierConfig {
   EstimatorConfig estimator{};
   std::array<ChannelConfig, kChannels> signals{};  ///< by Channel; for push(CanFrame) alone
-  GuardConfig guard{};                             ///< what is declared about the data
+  /// For push(CanFrame) too: those that the estimator's masses ask for.
+  ExtraSignals extra_signals{};
+  GuardConfig guard{};  ///< what is declared about the data
   /// Samples wait so long for what the guards find, at most 10,000 of them; 0: they do not wait,
   /// faults are named all the same.
   double judgement_delay_s{24.0};

@@ -7,7 +7,7 @@
 namespace dampline {
 
 AssemblerConfig assembler_config(const IdentifierConfig& config) noexcept {
-  return {config.signals, config.estimator.sample_rate_hz};
+  return {config.signals, config.extra_signals, config.estimator.sample_rate_hz};
 }
 
 GuardConfig guard_config(const IdentifierConfig& config) noexcept {

@@ -9,6 +9,7 @@
 
 #include "app/error.hpp"
 #include "app/verbs/simulate.hpp"
+#include "sim_hw/writers.hpp"
 
 namespace dampline::app {
 namespace {
@@ -175,6 +176,22 @@ TEST_F(SimulateVerb, SimulatesEitherTruckOfAWholeCar) {
   EXPECT_THAT(content(o.truth), HasSubstr("# vehicle = trailing\n# frame_mass_kg = 2200\n"));
   EXPECT_NE(records[0], records[1]);
   EXPECT_NE(records[1], records[2]);
+}
+
+TEST_F(SimulateVerb, WritesTheMassThatMovesWithOneTruckOfAWholeCar) {
+  SimulateOptions o = options("a.csv");
+  o.config = (folder_ / "car.toml").string();
+  ASSERT_EQ(simulate(o), 0);
+  EXPECT_THAT(content(o.config), HasSubstr("moving_mass_kg = 37200.0\n"));
+  o.vehicle = "leading";
+  ASSERT_EQ(simulate(o), 0);
+  EXPECT_THAT(content(o.config), HasSubstr("moving_mass_kg = 31530.9\nsuspension"));
+  o.extra_sensors = true;
+  ASSERT_EQ(simulate(o), 0);
+  EXPECT_THAT(content(o.config), HasSubstr("far_mass_kg = 5669.1\nframe_pitch_mass_kg = 1851.9\n"));
+  EXPECT_THAT(content(o.out), testing::StartsWith(std::string{sim::kExtrasHeader}));
+  o.vehicle = "";
+  EXPECT_THAT(usage_error(o), HasSubstr("--extra-sensors: a truck alone, expected --vehicle"));
 }
 
 TEST_F(SimulateVerb, KnowsWhatAWholeCarCannotHave) {

@@ -204,6 +204,9 @@ struct Wheelsets {
     Vehicle::Excitations e{};
     e[0].wheelset_mps2 = {x[0], x[1]};
     e[1].wheelset_mps2 = {x[2], x[3]};
+    const Eigen::Vector4d v = velocity_mps(t);
+    e[0].wheelset_mps = {v[0], v[1]};
+    e[1].wheelset_mps = {v[2], v[3]};
     return e;
   }
 };
@@ -260,6 +263,119 @@ TEST(Vehicle, BalancesItsEnergy) {
   }
   EXPECT_GT(lost, 100.0);
   EXPECT_NEAR(before.energy_j - first.energy_j, work - lost, 1e-3 * lost);
+}
+
+/// Equation 1 as it is printed: heights of both frames and their pitch, q = (z_b1, z_b2, chi_b1,
+/// chi_b2), with its letters; k_zz and c_zz of one axle box, of which (2) has two in k and c.
+struct Printed {
+  Eigen::Matrix4d mass, damping, stiffness;
+  Eigen::Matrix4d wheelset_damping, wheelset_stiffness;  // on heights of the wheelsets
+  Printed(const VehicleConfig& v, const TruckConfig& truck) {
+    const double m_w = v.frame_mass_kg;
+    const double m_n = 2.0 * (truck.moving_mass_kg - m_w);
+    const double i_n = m_n * v.gyration_radius_m * v.gyration_radius_m;
+    const double a_n = v.half_pivot_distance_m;
+    const double h = v.centre_height_m;
+    const double a = truck.modes.pitch_half_wheelbase_m;
+    const double c_x = v.pitch_damping_nms;
+    const double i_w = truck.modes.pitch_inertia_kgm2;
+    const double turned = (m_n * h * h + i_n) / (4.0 * a_n * a_n);
+    mass = Eigen::Vector4d{m_w + 0.25 * m_n + turned, m_w + 0.25 * m_n + turned, i_w, i_w}
+               .asDiagonal();
+    mass(0, 1) = mass(1, 0) = 0.25 * m_n - turned;
+    const auto boxes = [&](double zz) {
+      return Eigen::Matrix4d{
+          Eigen::Vector4d{4.0 * zz, 4.0 * zz, 4.0 * a * a * zz, 4.0 * a * a * zz}.asDiagonal()};
+    };
+    const auto wheelsets = [&](double zz) {
+      Eigen::Matrix4d out = Eigen::Matrix4d::Zero();
+      out.row(0) << -2.0 * zz, -2.0 * zz, 0.0, 0.0;
+      out.row(1) << 0.0, 0.0, -2.0 * zz, -2.0 * zz;
+      out.row(2) << -2.0 * a * zz, 2.0 * a * zz, 0.0, 0.0;
+      out.row(3) << 0.0, 0.0, -2.0 * a * zz, 2.0 * a * zz;
+      return out;
+    };
+    const double c_zz = 0.5 * truck.damping.viscous_positive_nspm;
+    const double k_zz = 0.5 * truck.stiffness_npm;
+    stiffness = boxes(k_zz);
+    wheelset_stiffness = wheelsets(k_zz);
+    damping = boxes(c_zz);
+    wheelset_damping = wheelsets(c_zz);
+    const double twice = c_x / (2.0 * a_n * a_n);
+    const double once = c_x / (2.0 * a_n);
+    Eigen::Matrix4d between;
+    between << twice, -twice, -once, -once,  //
+        -twice, twice, once, once,           //
+        -once, once, c_x, 0.0,               //
+        -once, once, 0.0, c_x;
+    damping += between;
+  }
+  [[nodiscard]] Eigen::Vector4d accel(const Eigen::Vector4d& q, const Eigen::Vector4d& rate,
+                                      double t) const {
+    return -mass.inverse() *
+           (damping * rate + stiffness * q + wheelset_damping * Wheelsets::velocity_mps(t) +
+            wheelset_stiffness * Wheelsets::height_m(t));
+  }
+};
+
+/// Largest difference of deflection and pitch between the vehicle and the printed equations during
+/// 4 s, over the largest deflection.
+double difference_to_printed(const VehicleConfig& config, const TruckConfig& truck,
+                             const VehicleConfig& printed_config) {
+  const Printed printed{printed_config, truck};
+  const double a = truck.modes.pitch_half_wheelbase_m;
+  Vehicle vehicle{config, truck};
+  vehicle.set_motion(Plane::motion(Eigen::Vector4d::Zero(), -Wheelsets::velocity_mps(0.0)));
+  using State = Eigen::Matrix<double, 8, 1>;
+  State x = State::Zero();
+  const auto rate = [&](const State& s, double t) {
+    State out;
+    out << s.tail<4>(), printed.accel(s.head<4>(), s.tail<4>(), t);
+    return out;
+  };
+  double difference = 0.0;
+  double largest = 0.0;
+  for (int n = 0; n < 9600; ++n) {
+    const double t = n * kStepS;
+    const double middle = t + 0.5 * kStepS;
+    const double end = t + kStepS;
+    vehicle.step(Wheelsets::excitation(t), Wheelsets::excitation(middle),
+                 Wheelsets::excitation(end), kStepS);
+    const State k1 = rate(x, t);
+    const State k2 = rate(x + 0.5 * kStepS * k1, middle);
+    const State k3 = rate(x + 0.5 * kStepS * k2, middle);
+    const State k4 = rate(x + kStepS * k3, end);
+    x += kStepS / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    const Eigen::Vector4d z = Wheelsets::height_m(end);
+    for (const auto position : {kLead, kTrail}) {
+      const auto i = static_cast<Eigen::Index>(position);
+      const double y = 2.0 * x[i] - z[2 * i] - z[2 * i + 1];
+      const double d = a * x[2 + i] - 0.5 * (z[2 * i] - z[2 * i + 1]);
+      const TruckMotion& found = vehicle.motion(position);
+      difference = std::max(difference, std::abs(found.deflection_m - y));
+      difference = std::max(difference, 2.0 * std::abs(found.pitch_m - d));
+      largest = std::max(largest, std::abs(y));
+    }
+  }
+  return difference / largest;
+}
+
+TEST(Vehicle, MovesByThePrintedEquations) {
+  for (TruckConfig truck : {laden_truck(), empty_truck()}) {
+    truck = with_frame_pitch(truck);
+    truck.friction_scale = 0.0;
+    truck.damping.viscous_positive_nspm = truck.damping.viscous_negative_nspm = 6e4;
+    VehicleConfig whole;
+    whole.centre_height_m = 1.1;
+    whole.pitch_damping_nms = 2.5e4;
+    EXPECT_LT(difference_to_printed(whole, truck, whole), 1e-6);
+    VehicleConfig low = whole;
+    low.centre_height_m = 0.0;
+    EXPECT_GT(difference_to_printed(low, truck, whole), 1e-3);
+    VehicleConfig loose = whole;
+    loose.pitch_damping_nms = 0.0;
+    EXPECT_GT(difference_to_printed(loose, truck, whole), 1e-3);
+  }
 }
 
 TEST(Vehicle, LeavesToTheTruckWhatHasAMemory) {

@@ -35,6 +35,11 @@ effect::ExplainerConfig explainer_config(const Config& config) {
     const char* name = effect::name_of(static_cast<effect::Effect>(i));
     out.allowed[i] = (has(wanted, "all") || has(wanted, name)) && !has(config.model.base, name);
   }
+  // What is left of a turn that is known looks like a late frame or a mode.
+  if (config.car.frame_pitch_mass_kg) {
+    out.allowed[static_cast<std::size_t>(effect::Effect::kTimeSkew)] = false;
+    out.allowed[static_cast<std::size_t>(effect::Effect::kUnmodelledMode)] = false;
+  }
   return out;
 }
 

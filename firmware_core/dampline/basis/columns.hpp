@@ -37,7 +37,7 @@ class LawColumns {
   static constexpr int kSignLanes = 12;  ///< the signs, filled up to whole vectors of four
   static constexpr int kLanes = kSignLanes + static_cast<int>(kCurveSegments);
   static_assert(kSignLanes >= static_cast<int>(kLawWidths) && kLanes % 4 == 0);
-  /// The columns as they are stored; what lies between signs and ramps is zero.
+  /// The columns as they are stored; what lies between signs and ramps is zero, or a frame's turn.
   using Lanes = Eigen::Array<float, kLanes, 1>;
 
   explicit LawColumns(const CurveNodes& nodes_mps) noexcept {
@@ -100,6 +100,11 @@ inline constexpr int kStiffnessColumn = LawColumns::kCount;
 inline constexpr int kViscousColumn = kStiffnessColumn + 1;
 inline constexpr int kTargetColumn = kViscousColumn + 1;
 inline constexpr int kRowColumns = kTargetColumn + 1;
+
+/// Lanes between signs and ramps that a frame's known turn adds to stiffness and target (Turn).
+inline constexpr int kTurnSpringLane = static_cast<int>(kLawWidths);
+inline constexpr int kTurnPushLane = kTurnSpringLane + 1;
+static_assert(kTurnPushLane < LawColumns::kSignLanes);
 
 using RowFactor = Information<kRowColumns>;
 using GalerkinRow = RowFactor::Row;

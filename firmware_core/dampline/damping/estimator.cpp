@@ -35,6 +35,9 @@ Result<EstimatorConfig> BasicEstimator<Kind>::check(const EstimatorConfig& confi
   if (!(config.moving_mass_kg > 0.0) || !std::isfinite(config.moving_mass_kg)) {
     return Errc::kInvalidConfig;
   }
+  for (const double extra_kg : {config.far_mass_kg, config.frame_pitch_mass_kg})
+    if (!(extra_kg >= 0.0) || !std::isfinite(extra_kg)) return Errc::kInvalidConfig;
+  if (config.frame_pitch_mass_kg > 0.0 && !kHasMotion) return Errc::kInvalidConfig;
   const double corner = config.velocity_corner_hz;
   if (corner != 0.0 && corner != 0.7 && corner != 1.0) return Errc::kInvalidConfig;
   double left = 0.0;
@@ -66,16 +69,18 @@ BasicEstimator<Kind>::BasicEstimator(const EstimatorConfig& config) noexcept
       velocity_{config.sample_rate_hz},
       deflection_{config.sample_rate_hz},
       law_{config.curve_nodes_mps},
+      turn_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps(), config.sample_rate_hz},
       rows_{config.sample_rate_hz},
       store_{{.memory = config.memory, .memory_blocks = config.memory_s / kBlockS}} {
-  row_reach_ = velocity_delay() + rows_.bank().half(0) + 2;
+  far_share_ = config.far_mass_kg / config.moving_mass_kg;
+  pitch_share_ = config.frame_pitch_mass_kg / config.moving_mass_kg;
+  row_reach_ = velocity_delay() + law_lag() + rows_.bank().half(0) + 2;
   for (std::size_t s = 0; s < kScales; ++s) {
     rows_per_block_ += static_cast<std::uint32_t>(block_ticks_ / rows_.bank().stride(s));
   }
   if (config.velocity_corner_hz != 0.0) {
-    velocity_.set_corner(config.velocity_corner_hz > 0.85 ? Baseline::Corner::k1p0Hz
-                                                          : Baseline::Corner::k0p7Hz);
-    corner_chosen_ = true;
+    set_corner(config.velocity_corner_hz > 0.85 ? Baseline::Corner::k1p0Hz
+                                                : Baseline::Corner::k0p7Hz);
   }
 }
 
@@ -163,6 +168,7 @@ void BasicEstimator<Kind>::start_stretch(std::int64_t tick) noexcept {
   if constexpr (kHasMotion) deflection_.reset();
   noise_.reset();
   average_.reset();
+  if constexpr (kHasMotion) turn_.reset();
 }
 
 template <class Kind>
@@ -171,13 +177,15 @@ DAMPLINE_WIDE void BasicEstimator<Kind>::process(const Sample& sample,
   const auto& a = sample.accel_mps2;
   const double relative_mps2 = 2.0 * a[0] - a[1] - a[2];
   const std::int64_t n = count_++;
-  rows_.set_accelerations(n, a[0], relative_mps2);
+  rows_.set_accelerations(n, pushed_mps2(sample, far_share_), relative_mps2);
   noise_.update(a[0]);
   const double input_mps2 = 0.5 * (a[1] + a[2]);
   const double change_mps2 = input_mps2 - last_input_mps2_;
   input_activity_ += (change_mps2 * change_mps2 - input_activity_) * step_s_ / kActivityTimeS;
   last_input_mps2_ = input_mps2;
   choose_corner();
+  if constexpr (kHasMotion)
+    if (pitch_share_ > 0.0) turn_known_ = turn_.take(sample, n);
   double accel_mps2 = 0.0;
   if (!lift_.update(relative_mps2, accel_mps2)) return;
   accel_mps2_[history(n - VelocityLift::kHalf)] =
@@ -192,7 +200,13 @@ template <class Kind>
 void BasicEstimator<Kind>::choose_corner() noexcept {
   if (corner_chosen_ || noise_.count() < kCornerDecision) return;
   const bool noisy = noise_.std() > kNoiseForHighCornerMps2;
-  velocity_.set_corner(noisy ? Baseline::Corner::k1p0Hz : Baseline::Corner::k0p7Hz);
+  set_corner(noisy ? Baseline::Corner::k1p0Hz : Baseline::Corner::k0p7Hz);
+}
+
+template <class Kind>
+void BasicEstimator<Kind>::set_corner(Baseline::Corner corner) noexcept {
+  velocity_.set_corner(corner);
+  if constexpr (kHasMotion) turn_.set_corner(corner);
   corner_chosen_ = true;
 }
 
@@ -203,8 +217,30 @@ void BasicEstimator<Kind>::take_velocity(std::int64_t n, double velocity_mps,
   const bool still =
       activity_ < kStillMps * kStillMps || input_activity_ < kQuietInputMps2 * kQuietInputMps2;
   count_velocity(velocity_mps, still);
-  if constexpr (kHasMotion) take_motion(n, velocity_mps, still, result);
-  const auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
+  if constexpr (kHasMotion) {
+    take_motion(n, velocity_mps, still, result);
+    if (pitch_share_ > 0.0) {
+      if (turn_known_) take_turned(n - law_lag());
+      return;
+    }
+  }
+  take_law(n, average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_), still);
+}
+
+/// Sample n, which is law_lag() behind the newest velocity: the frame's turn is known now.
+template <class Kind>
+void BasicEstimator<Kind>::take_turned(std::int64_t n) noexcept requires(kHasMotion) {
+  const double velocity_mps = velocity_mps_[history(n)];
+  auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
+  const Turn turn = turn_.mean(n, velocity_mps);
+  columns[kTurnSpringLane] = static_cast<float>(turn.spring_m);
+  columns[kTurnPushLane] = static_cast<float>(pitch_share_ * turn.push_mps2);
+  take_law(n, columns, still_[history(n)]);
+}
+
+template <class Kind>
+void BasicEstimator<Kind>::take_law(std::int64_t n, LawColumns::Lanes columns,
+                                    bool still) noexcept {
   if (!average_.complete()) return;
   if (first_law_ < 0) begin_raster(n - 1);
   rows_.set_law(n - 1, columns, still);

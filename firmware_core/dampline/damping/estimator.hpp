@@ -7,6 +7,7 @@
 
 #include "dampline/basis/columns.hpp"
 #include "dampline/config.hpp"
+#include "dampline/damping/turn.hpp"
 #include "dampline/estimate/block_ledger.hpp"
 #include "dampline/estimate/block_store.hpp"
 #include "dampline/estimate/grouped_store.hpp"
@@ -96,7 +97,8 @@ class BasicEstimator {
  private:
   static constexpr std::size_t kHistory = 1024;
   struct None {
-    explicit None(double /*unused*/ = 0.0) noexcept {}
+    template <class... Args>
+    explicit None(const Args&... /*unused*/) noexcept {}
   };
   template <class T>
   using OfMotion = std::conditional_t<kHasMotion, T, None>;
@@ -110,6 +112,9 @@ class BasicEstimator {
   void process(const Sample& sample, UpdateResult& result) noexcept;
   void choose_corner() noexcept;
   void take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept;
+  void set_corner(Baseline::Corner corner) noexcept;
+  void take_law(std::int64_t n, LawColumns::Lanes columns, bool still) noexcept;
+  void take_turned(std::int64_t n) noexcept requires(kHasMotion);
   void count_velocity(double velocity_mps, bool still) noexcept;
   void begin_raster(std::int64_t first_law) noexcept;
   void build_rows(std::int64_t newest) noexcept;
@@ -126,6 +131,11 @@ class BasicEstimator {
   [[nodiscard]] std::int64_t velocity_delay() const noexcept {
     return VelocityLift::kHalf + velocity_.delay();
   }
+  /// Of the law's columns behind the velocity: a frame's turn is known later.
+  [[nodiscard]] std::int64_t law_lag() const noexcept {
+    if constexpr (kHasMotion) return pitch_share_ > 0.0 ? turn_.delay() : 0;
+    return 0;
+  }
   [[nodiscard]] std::uint64_t basis_hash() const noexcept;
 
   EstimatorConfig config_;
@@ -133,6 +143,9 @@ class BasicEstimator {
   std::int64_t block_ticks_;
   std::int64_t row_reach_{0};  // samples from the centre of the longest row to the newest it needs
   std::uint32_t rows_per_block_{0};
+  double far_share_{0.0};  // of the moving mass
+  double pitch_share_{0.0};
+  bool turn_known_{false};
 
   BasicSampleScreen<Kind::kScreened> screen_;
   Fir<VelocityLift::kHalf> lift_;
@@ -142,6 +155,7 @@ class BasicEstimator {
   bool corner_chosen_{false};
   LawColumns law_;
   LawAverage average_;
+  OfMotion<TurnPath> turn_;
   BasicRowBuilder<typename Kind::Rows> rows_;
   BlockLedger ledger_;
   typename Kind::Store store_;

@@ -99,6 +99,8 @@ std::uint64_t BasicEstimator<Kind>::basis_hash() const noexcept {
   hash = hashed(hash, config_.anti_alias.corner_hz);
   hash = hashed(hash, config_.anti_alias.order);
   for (std::size_t s = 0; s < kScales; ++s) hash = hashed(hash, rows_.bank().half(s));
+  if (pitch_share_ > 0.0) hash = hashed(hash, pitch_share_);
+  if (far_share_ > 0.0) hash = hashed(hash, far_share_);
   return hash;
 }
 

@@ -27,7 +27,9 @@ Diagnosis::Diagnosis(const EstimatorConfig& config, const Grids& grids) noexcept
     : sample_rate_hz_{config.sample_rate_hz},
       block_ticks_{std::lround(Estimator::kBlockS * config.sample_rate_hz)},
       lift_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps()},
-      raw_{config.sample_rate_hz},
+      pitch_share_{config.frame_pitch_mass_kg / config.moving_mass_kg},
+      raw_{config.sample_rate_hz, config.far_mass_kg / config.moving_mass_kg,
+           config.frame_pitch_mass_kg > 0.0},
       rows_{config.sample_rate_hz},
       mean_{scaled(grids, grids.scale_m > 0.0 ? grids.scale_m : kStartScaleM),
             1.0 / config.sample_rate_hz},
@@ -120,9 +122,16 @@ void Diagnosis::take(const Motion& motion) noexcept {
   const LawValues laws = mean_.update(instant_of(motion));
   Rows::Sampled values = (left + 10.0F * centre + last_bend_) / 12.0F;
   values.head<kLawColumns>() = laws;
+  Turn turn;
+  if (pitch_share_ > 0.0) {
+    const RawRing::Entry& now = raw_.at(motion.tick);
+    turn = turn_.update({motion.velocity_mps, now.turn_mps, now.turn_m, now.end_mps2});
+  }
   if (mean_.complete()) {
     if (first_row_tick_ < 0) first_row_tick_ = motion.tick - 1;
     rows_.set(motion.tick - 1, values, still_);
+    if (pitch_share_ > 0.0)
+      rows_.set_turn(motion.tick - 1, turn.spring_m, pitch_share_ * turn.push_mps2);
     column_tick_ = motion.tick - 1;
     build_rows(motion.tick - 1);
   }

@@ -59,6 +59,8 @@ class Diagnosis {
   double sample_rate_hz_;
   std::int64_t block_ticks_;
   VelocityLift::Taps lift_;
+  double pitch_share_;
+  TurnMean turn_;
   RawRing raw_;
   Rows rows_;
   GramStore store_;

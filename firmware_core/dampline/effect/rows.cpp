@@ -62,7 +62,8 @@ void Rows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
   const std::int64_t first = tick - bank_.half(scale) - 1;
   std::array<double, 8> sum{};
   for (std::size_t i = 0; i < psi.size(); ++i) {
-    const auto& a = raw.at(first + static_cast<std::int64_t>(i)).accel_mps2;
+    const RawRing::Entry& at = raw.at(first + static_cast<std::int64_t>(i));
+    const auto& a = at.accel_mps2;
     sum[0] += rate[i] * a[0];
     sum[1] += once[i] * a[0];
     sum[2] += twice[i] * a[0];
@@ -70,7 +71,7 @@ void Rows::linear(std::size_t scale, std::int64_t tick, const RawRing& raw,
     sum[4] += twice[i] * a[1];
     sum[5] += once[i] * a[2];
     sum[6] += twice[i] * a[2];
-    sum[7] += psi[i] * a[0];
+    sum[7] += psi[i] * at.pushed_mps2;
   }
   // <psi, x'> = -<psi', x>; <psi, integral of x> = -<psi1, x>, twice: <Psi, x>
   row[kFrameRate] = -sum[0];
@@ -89,7 +90,18 @@ Row Rows::row(std::size_t scale, std::int64_t tick, const RawRing& raw) const no
   Row row;
   for (int i = 0; i < kSampledColumns; ++i) row[i] = sum[static_cast<std::size_t>(i)];
   linear(scale, tick, raw, row);
+  if (any_turn_) add_turn(scale, tick, row);
   return row;
+}
+
+/// Beside y = 2 z_b - z_1 - z_2, half of the turn's spring with each 2 z_b.
+void Rows::add_turn(std::size_t scale, std::int64_t tick, Row& row) const noexcept {
+  std::int64_t at = tick - bank_.half(scale);
+  for (const double psi : bank_.psi(scale)) {
+    const Turn& turn = turn_[index(at++)];
+    row[kFrameTwice] += 0.5 * psi * turn.spring_m;
+    row[kTarget] -= psi * turn.push_mps2;
+  }
 }
 
 double Rows::still_share(std::size_t scale, std::int64_t tick) const noexcept {

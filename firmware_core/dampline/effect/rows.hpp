@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "dampline/basis/window_bank.hpp"
+#include "dampline/damping/turn.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/effect/laws.hpp"
 #include "dampline/motion/drift_free_integral.hpp"
@@ -19,11 +20,19 @@ class RawRing {
  public:
   struct Entry {
     std::array<double, kChannels> accel_mps2{};
+    double pushed_mps2{0.0};  ///< z_b'' with what the far truck's share of the body adds
+    double end_mps2{0.0};     ///< the frame's turn where it is known (TurnMotion)
+    double turn_mps{0.0};
+    double turn_m{0.0};
     std::array<double, 2> wheelset_mps{};
   };
 
-  explicit RawRing(double sample_rate_hz) noexcept
-      : integral_{DriftFreeIntegral{sample_rate_hz}, DriftFreeIntegral{sample_rate_hz}} {}
+  RawRing(double sample_rate_hz, double far_share, bool knows_turn) noexcept
+      : integral_{DriftFreeIntegral{sample_rate_hz}, DriftFreeIntegral{sample_rate_hz},
+                  DriftFreeIntegral{sample_rate_hz}},
+        turn_{sample_rate_hz, TurnPath::kFaster},
+        far_share_{far_share},
+        knows_turn_{knows_turn} {}
 
   void push(const Sample& sample) noexcept {
     bool finite = true;
@@ -31,16 +40,19 @@ class RawRing {
     Entry& entry = ring_[index(sample.tick)];
     if (!finite || sample.tick != last_tick_ + 1) {
       for (DriftFreeIntegral& integral : integral_) integral.reset();
+      turn_.reset();
     }
     last_tick_ = sample.tick;
     if (!finite) return;  // what needs this sample is never asked for
     entry.accel_mps2 = sample.accel_mps2;
+    entry.pushed_mps2 = pushed_mps2(sample, far_share_);
     for (std::size_t w = 0; w < 2; ++w) {
       double velocity_mps = 0.0;
       if (integral_[w].update(sample.accel_mps2[1 + w], velocity_mps)) {
         ring_[index(sample.tick - integral_[w].delay())].wheelset_mps[w] = velocity_mps;
       }
     }
+    if (knows_turn_) take_turn(sample, entry);
   }
   /// Of the last kLength ticks.
   [[nodiscard]] const Entry& at(std::int64_t tick) const noexcept { return ring_[index(tick)]; }
@@ -50,7 +62,20 @@ class RawRing {
   static std::size_t index(std::int64_t tick) noexcept {
     return static_cast<std::size_t>(tick) & (kLength - 1);
   }
-  std::array<DriftFreeIntegral, 2> integral_;
+  void take_turn(const Sample& sample, Entry& entry) noexcept {
+    entry.end_mps2 = end_turn_mps2(sample);
+    double rate_mps = 0.0;
+    if (!integral_[2].update(turn_mps2(sample), rate_mps)) return;
+    const std::int64_t then = sample.tick - integral_[2].delay();
+    ring_[index(then)].turn_mps = rate_mps;
+    double turn_m = 0.0;
+    if (turn_.update(rate_mps, turn_m)) ring_[index(then - turn_.delay())].turn_m = turn_m;
+  }
+
+  std::array<DriftFreeIntegral, 3> integral_;
+  DriftFreeIntegral turn_;
+  double far_share_;
+  bool knows_turn_;
   std::int64_t last_tick_{-2};
   std::array<Entry, kLength> ring_{};
 };
@@ -70,6 +95,11 @@ class Rows {
     still_[index(tick)] = still ? 1.0F : 0.0F;
   }
 
+  /// What a frame's known turn adds at a tick; per unit of mass.
+  void set_turn(std::int64_t tick, double spring_m, double push_mps2) noexcept {
+    turn_[index(tick)] = {spring_m, push_mps2};
+    any_turn_ = true;
+  }
   [[nodiscard]] const Sampled& values(std::int64_t tick) const noexcept {
     return values_[index(tick)];
   }
@@ -87,12 +117,15 @@ class Rows {
     return static_cast<std::size_t>(tick) % kRing;
   }
   void linear(std::size_t scale, std::int64_t tick, const RawRing& raw, Row& row) const noexcept;
+  void add_turn(std::size_t scale, std::int64_t tick, Row& row) const noexcept;
 
   WindowBank bank_;
   std::array<std::size_t, kScales> rate_start_{};
   std::array<double, kRateTable> lumped_rate_{};  // psi' at -half-1...half+1, by scale
   std::array<Sampled, kRing> values_{};
   std::array<float, kRing> still_{};
+  std::array<Turn, kRing> turn_{};
+  bool any_turn_{false};
 };
 
 /// Watches the residual of friction and spring, row by row at one short scale, for the rare large

@@ -139,6 +139,9 @@ Sample Surrogate::seen(const std::array<double, kChannels>& accel_mps2) {
     const double step = config_.step_mps2[c];
     out.accel_mps2[c] = step > 0.0 ? step * std::round(noisy / step) : noisy;
   }
+  // Its frame stands level on its springs, and nothing is coupled to it.
+  const auto& a = out.accel_mps2;
+  out.extra_mps2 = {static_cast<float>(a[0] + 0.5 * (a[1] - a[2])), 0.0F};
   return out;
 }
 

@@ -72,13 +72,16 @@ class Decimator {
     out = ring_[slot(centre)];
     out.tick = centre / factor_;
     out.accel_mps2 = {};
+    std::array<double, kExtras> extra{};
     for (std::int64_t i = -half_; i <= half_; ++i) {
       const Sample& part = ring_[slot(centre + i)];
       const double tap = taps_[static_cast<std::size_t>(half_ + i)];
       for (std::size_t c = 0; c < kChannels; ++c) out.accel_mps2[c] += tap * part.accel_mps2[c];
+      for (std::size_t e = 0; e < kExtras; ++e) extra[e] += tap * double{part.extra_mps2[e]};
       if (std::abs(i) <= factor_)
         out.saturated = static_cast<std::uint8_t>(out.saturated | part.saturated);
     }
+    for (std::size_t e = 0; e < kExtras; ++e) out.extra_mps2[e] = static_cast<float>(extra[e]);
   }
 
   int factor_;

@@ -126,9 +126,9 @@ class Baseline {
 /// lies a little above the corner is exact.
 class DriftFreeIntegral {
  public:
-  /// `sample_rate_hz` 150...400.
-  explicit DriftFreeIntegral(double sample_rate_hz) noexcept
-      : short_{1.0 / sample_rate_hz}, baseline_{decimation(sample_rate_hz)} {}
+  /// `sample_rate_hz` 150...400. `times` raises the corner and shortens the delay, 1 to some 5.
+  explicit DriftFreeIntegral(double sample_rate_hz, double times = 1.0) noexcept
+      : short_{1.0 / sample_rate_hz}, baseline_{decimation(sample_rate_hz / times)} {}
 
   void set_corner(Baseline::Corner corner) noexcept { baseline_.set_corner(corner); }
   [[nodiscard]] Baseline::Corner corner() const noexcept { return baseline_.corner(); }

@@ -11,14 +11,24 @@ Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) no
   for (const ChannelConfig& channel : config.channels) {
     if (!is_valid(channel)) return Errc::kInvalidConfig;
   }
+  for (const std::optional<ChannelConfig>& extra : config.extras) {
+    if (extra && !is_valid(*extra)) return Errc::kInvalidConfig;
+  }
   return config;
 }
 
 SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
     : lanes_{ChannelLane{config.channels[0], config.sample_rate_hz},
              ChannelLane{config.channels[1], config.sample_rate_hz},
-             ChannelLane{config.channels[2], config.sample_rate_hz}},
-      meter_{config.sample_rate_hz} {}
+             ChannelLane{config.channels[2], config.sample_rate_hz},
+             ChannelLane{{}, config.sample_rate_hz}, ChannelLane{{}, config.sample_rate_hz}},
+      meter_{config.sample_rate_hz} {
+  for (std::size_t e = 0; e < kExtras; ++e) {
+    if (!config.extras[e]) continue;
+    extra_of_[count_ - kChannels] = e;
+    lanes_[count_++] = ChannelLane{*config.extras[e], config.sample_rate_hz};
+  }
+}
 
 void SampleAssembler::push(const CanFrame& frame) noexcept {
   ++counts_.frames;
@@ -28,7 +38,7 @@ void SampleAssembler::push(const CanFrame& frame) noexcept {
   }
   bool wanted = false;
   bool far = false;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  for (std::size_t c = 0; c < count_; ++c) {
     if (!lanes_[c].wants(frame)) continue;
     wanted = true;
     ChannelLane& lane = lanes_[c];
@@ -47,8 +57,7 @@ void SampleAssembler::push(const CanFrame& frame) noexcept {
   // Nearly always nothing, or one instant that is whole. A channel that did not advance is not far
   // ahead: the last frame left nothing to settle.
   for (Readings readings; far || !waits(); ++next_tick_) {
-    if (far || find_all(next_tick_, readings) < static_cast<int>(kChannels))
-      return settle(kWaitTicks);
+    if (far || find_all(next_tick_, readings) < count_) return settle(kWaitTicks);
     emit(readings);
   }
 }
@@ -59,13 +68,13 @@ void SampleAssembler::push_unusual(ChannelLane& lane, const CanFrame& frame) noe
 }
 
 bool SampleAssembler::waits() const noexcept {
-  for (std::size_t c = kChannels; c-- > 0;)
+  for (std::size_t c = count_; c-- > 0;)
     if (lanes_[c].newest() - lane_offset_[c] < next_tick_) return true;
   return false;
 }
 
 void SampleAssembler::flush() noexcept {
-  for (ChannelLane& lane : lanes_) lane.flush();
+  for (std::size_t c = 0; c < count_; ++c) lanes_[c].flush();
   if (!aligned_ && ready_to_align(1)) align();
   if (aligned_) settle(0);
 }
@@ -80,20 +89,21 @@ void SampleAssembler::restart(std::int64_t time_ns) noexcept {
   const ChannelLane& first = lanes_[0];
   if (aligned_) {
     settle(0);
-    for (std::size_t c = 0; c < kChannels; ++c)
+    for (std::size_t c = 0; c < count_; ++c)
       before_pause_[c] = lanes_[c].newest() - lane_offset_[c];
     after_pause_ = true;
     next_tick_ = std::max(next_tick_,
                           static_cast<std::int64_t>(std::llround(first.line().tick_at(time_ns))));
   }
-  for (ChannelLane& lane : lanes_) lane.restart(next_tick_);
+  for (std::size_t c = 0; c < count_; ++c) lanes_[c].restart(next_tick_);
   aligned_ = false;
   meter_.begin_segment();
   ++counts_.restarts;
 }
 
 bool SampleAssembler::ready_to_align(std::uint64_t frames) const noexcept {
-  return std::all_of(lanes_.begin(), lanes_.end(),
+  const auto end = lanes_.begin() + static_cast<std::ptrdiff_t>(count_);
+  return std::all_of(lanes_.begin(), end,
                      [frames](const ChannelLane& lane) { return lane.since_start() >= frames; });
 }
 
@@ -102,7 +112,7 @@ void SampleAssembler::align() noexcept {
   const std::int64_t now_ns = lanes_[0].line().time_ns();
   const double tick_now = lanes_[0].line().tick_at(now_ns);
   std::int64_t oldest = next_tick_;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  for (std::size_t c = 0; c < count_; ++c) {
     lane_offset_[c] = std::llround(lanes_[c].line().tick_at(now_ns) - tick_now);
     oldest = std::max(oldest, lanes_[c].oldest() - lane_offset_[c]);
     const std::int64_t ticks = lanes_[c].first() - lane_offset_[c] - before_pause_[c] - 1;
@@ -117,18 +127,18 @@ const Reading* SampleAssembler::find(std::size_t channel, std::int64_t tick) con
   return lanes_[channel].find(tick + lane_offset_[channel]);
 }
 
-int SampleAssembler::find_all(std::int64_t tick, Readings& readings) const noexcept {
-  int channels = 0;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+std::size_t SampleAssembler::find_all(std::int64_t tick, Readings& readings) const noexcept {
+  std::size_t channels = 0;
+  for (std::size_t c = 0; c < count_; ++c) {
     readings[c] = find(c, tick);
-    channels += readings[c] != nullptr ? 1 : 0;
+    channels += readings[c] != nullptr ? 1U : 0U;
   }
   return channels;
 }
 
 std::int64_t SampleAssembler::newest() const noexcept {
   std::int64_t tick = lanes_[0].newest() - lane_offset_[0];
-  for (std::size_t c = 1; c < kChannels; ++c)
+  for (std::size_t c = 1; c < count_; ++c)
     tick = std::max(tick, lanes_[c].newest() - lane_offset_[c]);
   return tick;
 }
@@ -140,9 +150,9 @@ void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
     const std::int64_t end = std::min(last, next_tick_ + kLaneSpan);
     while (next_tick_ <= end) {
       Readings readings;
-      const int channels = find_all(next_tick_, readings);
-      if (channels < static_cast<int>(kChannels) && last - next_tick_ < wait_ticks) return;
-      if (channels == static_cast<int>(kChannels)) {
+      const std::size_t channels = find_all(next_tick_, readings);
+      if (channels < count_ && last - next_tick_ < wait_ticks) return;
+      if (channels == count_) {
         emit(readings);
       } else if (channels > 0) {
         ++counts_.incomplete;
@@ -167,6 +177,10 @@ void SampleAssembler::emit(const Readings& readings) noexcept {
     sample.accel_mps2[c] = readings[c]->accel_mps2;
     saturated |= unsigned{readings[c]->saturated} << c;
   }
+  for (std::size_t c = kChannels; c < count_; ++c) {
+    sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(readings[c]->accel_mps2);
+    saturated |= unsigned{readings[c]->saturated} << c;
+  }
   sample.saturated = static_cast<std::uint8_t>(saturated);
   ++counts_.samples;
   meter_.update(sample.tick, sample.time_ns);
@@ -182,7 +196,8 @@ bool SampleAssembler::pop(Sample& sample) noexcept {
 
 AssemblerCounts SampleAssembler::counts() const noexcept {
   AssemblerCounts all = counts_;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  all.lanes = count_;
+  for (std::size_t c = 0; c < count_; ++c) {
     all.channels[c] = lanes_[c].counts();
     all.channels[c].paused = counts_.channels[c].paused;
   }
@@ -192,7 +207,7 @@ AssemblerCounts SampleAssembler::counts() const noexcept {
 FrameLedger ledger_of(const AssemblerCounts& counts, std::uint64_t kernel_drops) noexcept {
   FrameLedger ledger;
   ledger.kernel_drops = kernel_drops;
-  ledger.processed = kChannels * counts.samples;
+  ledger.processed = counts.lanes * counts.samples;
   ledger.error = counts.error;
   ledger.foreign = counts.foreign;
   std::uint64_t readings = 0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "dampline/can_frame.hpp"
 #include "dampline/result.hpp"
@@ -12,24 +13,29 @@
 
 namespace dampline {
 
+using ExtraSignals = std::array<std::optional<ChannelConfig>, kExtras>;  ///< by Extra
+
 struct AssemblerConfig {
   std::array<ChannelConfig, kChannels> channels{};  ///< indexed by Channel
+  ExtraSignals extras{};                            ///< those that are named belong to every sample
   double sample_rate_hz{300.0};                     ///< nominal, within 10 % (50 % with counters)
 };
 
 /// Monotone.
 struct AssemblerCounts {
-  std::uint64_t frames{0};      ///< given to push()
-  std::uint64_t foreign{0};     ///< other people's: no channel wants the identifier
-  std::uint64_t error{0};       ///< error frames
-  std::uint64_t samples{0};     ///< complete instants
-  std::uint64_t incomplete{0};  ///< instants dropped because a channel was missing
-  std::uint64_t restarts{0};    ///< long pauses after which the channels were aligned anew
-  std::uint64_t overflow{0};    ///< samples lost because pop() was not called
-  std::array<ChannelCounts, kChannels> channels{};
+  std::uint64_t frames{0};       ///< given to push()
+  std::uint64_t foreign{0};      ///< other people's: no channel wants the identifier
+  std::uint64_t error{0};        ///< error frames
+  std::uint64_t samples{0};      ///< complete instants
+  std::uint64_t incomplete{0};   ///< instants dropped because a channel was missing
+  std::uint64_t restarts{0};     ///< long pauses after which the channels were aligned anew
+  std::uint64_t overflow{0};     ///< samples lost because pop() was not called
+  std::size_t lanes{kChannels};  ///< channels that make a sample: the three, then the extras named
+  std::array<ChannelCounts, kChannels + kExtras> channels{};
 };
 
-/// CAN frames in, samples out: three channels decoded, numbered and brought together by tick.
+/// CAN frames in, samples out: three channels, and extras where they are named, decoded, numbered
+/// and brought together by tick.
 ///
 /// Channels are aligned once by time, to the nearest tick, over the first kAlignFrames of each, and
 /// then kept by their counters. An instant waits kWaitTicks for its channels, so frames may swap;
@@ -60,8 +66,9 @@ class SampleAssembler {
  private:
   static constexpr std::int64_t kLaneSpan = ChannelLane::kKept;
   static constexpr std::size_t kReady = 128;
+  static constexpr std::size_t kMostLanes = kChannels + kExtras;
 
-  using Readings = std::array<const Reading*, kChannels>;
+  using Readings = std::array<const Reading*, kMostLanes>;
   void push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept;
   void align() noexcept;
   void settle(std::int64_t wait_ticks) noexcept;
@@ -69,16 +76,18 @@ class SampleAssembler {
   void restart(std::int64_t time_ns) noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
   /// How many channels have the tick; null for the others.
-  int find_all(std::int64_t tick, Readings& readings) const noexcept;
+  std::size_t find_all(std::int64_t tick, Readings& readings) const noexcept;
   [[nodiscard]] std::int64_t newest() const noexcept;
   /// A channel has nothing yet of the next instant, nor of a later one.
   [[nodiscard]] bool waits() const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 
-  std::array<ChannelLane, kChannels> lanes_;
-  std::array<std::int64_t, kChannels> lane_offset_{};   // lane tick = tick + offset
-  std::array<std::int64_t, kChannels> before_pause_{};  // newest tick, where there was a pause
+  std::size_t count_{kChannels};                 // of lanes that are used
+  std::array<std::size_t, kExtras> extra_of_{};  // by the lane after the three
+  std::array<ChannelLane, kMostLanes> lanes_;
+  std::array<std::int64_t, kMostLanes> lane_offset_{};   // lane tick = tick + offset
+  std::array<std::int64_t, kMostLanes> before_pause_{};  // newest tick, where there was a pause
   bool aligned_{false};
   bool after_pause_{false};
   std::int64_t next_tick_{0};

@@ -57,6 +57,7 @@ DAMPLINE_WIDE bool BasicSampleScreen<kMost>::push(const Sample& sample, Screened
     if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
     if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
   }
+  if (sample.saturated >> kChannels != 0) mark(0, 1, Verdict::kSaturated);  // an extra
   for (std::size_t c = 0; sample.spoilt && c < kChannels; ++c) mark(c, 1, Verdict::kSpoilt);
   for (std::size_t c = 0; c < kChannels; ++c)
     if (runs_[c].stuck || holds(c, sample.tick)) judge_stuck(c);

@@ -99,8 +99,11 @@ DAMPLINE_WIDE LawAverage::Lanes LawAverage::update(const LawColumns& law, double
 template <class Keeps>
 GalerkinRow BasicRowBuilder<Keeps>::row(std::size_t scale, std::int64_t n) const noexcept {
   GalerkinRow row;
-  row.head<LawColumns::kCount>() = LawColumns::values(law_columns(scale, n));
+  const LawColumns::Lanes law = law_columns(scale, n);
+  row.head<LawColumns::kCount>() = LawColumns::values(law);
   row.tail<3>() = linear_columns(scale, n);
+  row[kStiffnessColumn] += double{law[kTurnSpringLane]};
+  row[kTargetColumn] -= double{law[kTurnPushLane]};
   return row;
 }
 
