@@ -13,6 +13,9 @@ constexpr double kStepsMoved = 8.0;
 constexpr double kFlatTopRms = 4.0;  // smaller extremes repeat by chance
 constexpr double kSteepSteps = 6.0;
 constexpr double kSameValue = 1e-9;  // rounding of a value that was printed
+constexpr double kNoNumberMps2 = 1e6;
+
+bool is_number(double accel_mps2) noexcept { return std::abs(accel_mps2) < kNoNumberMps2; }
 }  // namespace
 
 template <std::size_t kMost>
@@ -55,7 +58,7 @@ DAMPLINE_WIDE bool BasicSampleScreen<kMost>::push(const Sample& sample, Screened
   for (std::size_t c = 0; c < kChannels; ++c) {
     follow(runs_[c], sample.accel_mps2[c], sample.tick, paused);
     if ((sample.saturated >> c & 1U) != 0U) mark(c, 1, Verdict::kSaturated);
-    if (!std::isfinite(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
+    if (!is_number(sample.accel_mps2[c])) mark(c, 1, Verdict::kNotFinite);
   }
   if (sample.saturated >> kChannels != 0) mark(0, 1, Verdict::kSaturated);  // an extra
   for (std::size_t c = 0; sample.spoilt && c < kChannels; ++c) mark(c, 1, Verdict::kSpoilt);
@@ -113,7 +116,7 @@ void BasicSampleScreen<kMost>::follow(Run& run, double value, std::int64_t tick,
 
 template <std::size_t kMost>
 void BasicSampleScreen<kMost>::follow_extremes(Run& run, double value) noexcept {
-  if (!std::isfinite(value)) return;
+  if (!is_number(value)) return;
   const double size = std::abs(value - run.value);
   if (run.count > 0.0 && size > kSameValue && (run.step_mps2 == 0.0 || size < run.step_mps2))
     run.step_mps2 = size;
@@ -159,7 +162,7 @@ bool BasicSampleScreen<kMost>::moved(std::size_t channel) const noexcept {
   const std::int64_t first_tick = held(0).sample.tick - static_cast<std::int64_t>(window_) + 1;
   for (std::size_t age = 0; age < count_ && held(age).sample.tick >= first_tick; ++age) {
     const double value = held(age).sample.accel_mps2[channel];
-    if (!std::isfinite(value)) continue;
+    if (!is_number(value)) continue;
     lowest = std::min(lowest, value);
     highest = std::max(highest, value);
   }
