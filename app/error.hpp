@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <stdexcept>
+#include <string>
 
 namespace dampline::app {
 
@@ -8,6 +9,12 @@ namespace dampline::app {
 /// expected.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// The file system refused: what another place, or more space, may cure.
+struct IoError : RunError {
+  IoError(const std::string& text, int number) : RunError{text}, error{number} {}
+  int error;  ///< errno
 };
 
 /// Wrong usage or configuration: exit code 2.

@@ -9,12 +9,13 @@
 #include <functional>
 
 #include "app/error.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 
 /// Prints the error and returns the exit code.
 inline int fail(const char* text, int code) {
-  fmt::print(stderr, "dampline: error: {}\n", text);
+  fmt::print(stderr, "dampline: error: {}\n", drivers::printable(text));
   return code;
 }
 

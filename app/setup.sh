@@ -12,7 +12,6 @@ libcli11-dev         the command line
 libtomlplusplus-dev  configuration files
 nlohmann-json3-dev   parameters.json
 libfmt-dev           text output
-gnuplot-nox          draws the plots of report.html
 nettle-dev           SHA-256 of the input files
 libgpiod-dev         marker lines and the status lamp
 pkg-config           finds libgpiod and its version

@@ -10,7 +10,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 
@@ -252,24 +251,6 @@ def other_processors(table, text):
         table.add(f"64-bit Arm, {what}", passed[1] + " pass" if passed else figure)
 
 
-def plot(folder):
-    """The histogram of latency.csv as a picture."""
-    if not (folder / "latency.csv").exists() or not shutil.which("gnuplot"):
-        return
-    rows = [line.split(",") for line in (folder / "latency.csv").read_text().splitlines()[1:]]
-    script = ('set terminal svg size 900,420 background "white"\n'
-              f'set output "{folder}/latency.svg"\nset logscale xy\nset grid\n'
-              'set xlabel "time of one sample (ns)"\n'
-              'set ylabel "samples in a sixteenth of an octave"\n')
-    names = list(dict.fromkeys(row[0] for row in rows))
-    for i, name in enumerate(names):
-        script += f"$d{i} << EOD\n" + "".join(
-            f"{row[1]} {row[3]}\n" for row in rows if row[0] == name) + "EOD\n"
-    script += "plot " + ", ".join(f'$d{i} with histeps lw 2 title "{name}"'
-                                  for i, name in enumerate(names)) + "\n"
-    subprocess.run(["gnuplot"], input=script, text=True, check=False)
-
-
 def machine():
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
                 if line.startswith("model name")), "unknown processor")
@@ -356,7 +337,6 @@ def main():
         tables["aims"] = Table()
         aims(tables["aims"], figures)
         parts.append("aims")
-    plot(folder)
     sections = sections_of(RESULTS.read_text() if RESULTS.exists() else "")
     for part in parts:
         body = tables[part].text() if part in tables else own_text(results.log(part))

@@ -7,12 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "app/config/fields.hpp"
 #include "app/error.hpp"
 #include "app/text/format.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -197,11 +196,10 @@ Config parse_config(std::string_view text, const std::string& origin) {
 }
 
 Config load_config(const std::filesystem::path& file) {
-  std::ifstream stream{file, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
-  if (!stream.good() && !stream.eof())
-    throw UsageError{fmt::format("{}: cannot be read", file.string())};
-  Config config = parse_config(text, file.string());
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+  const auto text = drivers::read_whole(file.string(), kMostBytes);
+  if (!text.ok()) throw UsageError{text.error_text()};
+  Config config = parse_config(text.value(), file.string());
   std::string& dbc = config.input.can.dbc;
   if (!dbc.empty() && std::filesystem::path{dbc}.is_relative())
     dbc = (file.parent_path() / dbc).string();

@@ -88,10 +88,17 @@ struct GuardSettings {
 
 /// Recording of a live run.
 struct BlackboxSettings {
-  int rotate_mib{64};       ///< a new file beyond this size
-  double rotate_s{3600.0};  ///< and after this time
-  int keep_mib{0};          ///< the oldest files go beyond this size of all; 0: none goes
-  double sync_s{1.0};       ///< at most so much is lost with the power
+  int rotate_mib{64};        ///< a new file beyond this size
+  double rotate_s{3600.0};   ///< and after this time
+  int keep_mib{8192};        ///< the oldest files go beyond this size of all; 0: none goes
+  double keep_s{0.0};        ///< and beyond this age; 0: none goes
+  int reserve_free_mib{64};  ///< stays free on the disk, for the results
+  double sync_s{1.0};        ///< at most so much is lost with the power
+};
+
+/// Of a live run.
+struct LiveSettings {
+  int keep_runs{0};  ///< run directories without --out, the oldest go; 0: none goes
 };
 
 /// Digital lines of a live run.
@@ -109,6 +116,7 @@ struct Config {
   EstimateConfig estimate;
   GuardSettings guards;
   BlackboxSettings blackbox;
+  LiveSettings live;
   GpioConfig gpio;
 };
 

@@ -154,8 +154,19 @@ void add_blackbox(BlackboxSettings& blackbox, Fields& out) {
       {"blackbox", "rotate_s", "and after this time", NumberField{&blackbox.rotate_s, {1.0, 1e7}}});
   out.push_back({"blackbox", "keep_mib", "the oldest files go beyond this size of all; 0: none",
                  IntegerField{&blackbox.keep_mib, {0.0, 1e9}}});
+  out.push_back({"blackbox", "keep_s", "and beyond this age; 0: none",
+                 NumberField{&blackbox.keep_s, {0.0, 3.2e9}}});
+  out.push_back({"blackbox", "reserve_free_mib",
+                 "stays free on the disk; the oldest files go, or recording stops",
+                 IntegerField{&blackbox.reserve_free_mib, {0.0, 1e9}}});
   out.push_back({"blackbox", "sync_s", "at most so much is lost with the power",
                  NumberField{&blackbox.sync_s, {0.1, 3600.0}}});
+}
+
+void add_live(LiveSettings& live, Fields& out) {
+  out.push_back({"live", "keep_runs",
+                 "older run directories of the interface's name go, without --out; 0: none",
+                 IntegerField{&live.keep_runs, {0.0, 1e6}}});
 }
 
 void add_gpio(GpioConfig& gpio, Fields& out) {
@@ -177,6 +188,7 @@ std::vector<Field> fields(Config& config) {
   add_estimate(config.estimate, out);
   add_guards(config.guards, out);
   add_blackbox(config.blackbox, out);
+  add_live(config.live, out);
   add_gpio(config.gpio, out);
   return out;
 }

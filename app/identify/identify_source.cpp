@@ -15,6 +15,7 @@
 #include "app/record/source_kind.hpp"
 #include "app/rig/identify.hpp"
 #include "app/rig/record.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 
@@ -44,7 +45,7 @@ void Progress::show(std::optional<double> share, double time_s, const std::strin
                                 ? fmt::format("{:.0f} s of record, {:.0f} x real time  ", time_s,
                                               time_s / std::max(elapsed.count(), 1e-9))
                                 : std::string{};
-  fmt::print(stderr, "\r\033[K{}{}{}", percent, speed, state);
+  fmt::print(stderr, "\r\033[K{}{}{}", percent, speed, drivers::printable(state));
   std::fflush(stderr);
   shown_ = true;
 }

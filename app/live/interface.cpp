@@ -2,6 +2,8 @@
 #include "app/live/interface.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
@@ -9,7 +11,7 @@
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
 #include "app/record/frames.hpp"
-#include "app/run/directory.hpp"
+#include "app/run/disk.hpp"
 #include "app/run/json.hpp"
 #include "app/text/format.hpp"
 #include "drivers/blackbox/writer.hpp"
@@ -52,6 +54,8 @@ std::unique_ptr<hal::RecordSink> open_sink(const BlackboxSettings& settings,
   blackbox.rotate_bytes = static_cast<std::uint64_t>(settings.rotate_mib * kKib * kKib);
   blackbox.rotate_ns = std::llround(1e9 * settings.rotate_s);
   blackbox.keep_bytes = static_cast<std::uint64_t>(settings.keep_mib * kKib * kKib);
+  blackbox.keep_ns = std::llround(1e9 * settings.keep_s);
+  blackbox.reserve_free_bytes = static_cast<std::uint64_t>(settings.reserve_free_mib * kKib * kKib);
   blackbox.sync_interval_ns = std::llround(1e9 * settings.sync_s);
   blackbox.interfaces = {interface};
   auto sink = drivers::BlackboxWriter::open(blackbox);
@@ -94,10 +98,12 @@ Identified identify_live(const Config& config, const std::string& interface,
     notifier.stopping();
   };
   outlets.publish = [&](const RunResult& result) {
-    write_file(place.run / "live.json", to_json(result));
     const std::string line = status_line(result);
     notifier.status(line);
     progress.show({}, 0.0, line);
+    std::error_code removed;  // the run directory, which is made again
+    std::filesystem::create_directories(place.run, removed);
+    write_file(place.run / "live.json", to_json(result));
   };
   LiveRun run{config,
               assembler,

@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <thread>
 
 #include "app/error.hpp"
@@ -46,7 +48,10 @@ Identified LiveRun::run() {
   lock_memory(realtime_);
   recorder_.start();
   explainer_.start();
-  std::thread acquisition{[this] { acquire(); }};
+  std::jthread acquisition{[this] { acquire(); }};
+  // However this function is left, the thread can be joined.
+  const std::unique_ptr<Acquisition, void (*)(Acquisition*)> stopper{
+      acquisition_.get(), [](Acquisition* a) { a->stop(); }};
   ready_.wait();
   if (outlets_.begin) outlets_.begin(recorder_);
   watch(signals);
@@ -98,12 +103,27 @@ void LiveRun::publish_when_fresh() {
   RunResult result = live_result(acquisition_->status().front(),
                                  surroundings(std::string{name_of(state_)}), config_);
   result.evidence.explanation = explainer_.newest();
-  outlets_.publish(result);
+  publish(result);
+}
+
+/// A disk that is full or a directory that is gone ends no run: the next version is tried again.
+void LiveRun::publish(const RunResult& result) {
+  try {
+    outlets_.publish(result);
+    if (failed_in_a_row_ > 0)
+      note(hal::EventKind::kPublishResumed, static_cast<std::int64_t>(failed_in_a_row_));
+    failed_in_a_row_ = 0;
+  } catch (const std::exception& error) {
+    const auto* io = dynamic_cast<const IoError*>(&error);
+    if (failed_in_a_row_ == 0) note(hal::EventKind::kPublishFailed, io != nullptr ? io->error : 0);
+    ++failed_in_a_row_;
+    ++publish_failures_;
+  }
 }
 
 LiveSurroundings LiveRun::surroundings(const std::string& state) const {
   return {parts_.name, realtime_, recorder_.health(), options_.record,
-          state,       start_ns_, silence_ns_};
+          state,       start_ns_, silence_ns_,        publish_failures_};
 }
 
 Identified LiveRun::conclude() {

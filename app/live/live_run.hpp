@@ -36,8 +36,9 @@ struct LiveParts {
 
 /// What the main thread tells the world; each is called from the thread that called run().
 struct LiveOutlets {
-  std::function<void(Recorder&)> begin{};           ///< the threads run
-  std::function<void(const RunResult&)> publish{};  ///< every publish_every_s
+  std::function<void(Recorder&)> begin{};  ///< the threads run
+  /// Every publish_every_s. What it throws is counted and told as an event, and ends no run.
+  std::function<void(const RunResult&)> publish{};
   /// Some times a second: the state, how often the acquisition's loop has come round, and now
   /// (monotonic, ns).
   std::function<void(LiveState, std::uint64_t, std::int64_t)> turn{};
@@ -60,6 +61,7 @@ class LiveRun {
   void watch(const Signals& signals);
   void rotate();
   void publish_when_fresh();
+  void publish(const RunResult& result);
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();
   void note(hal::EventKind kind, std::int64_t value);
@@ -79,6 +81,8 @@ class LiveRun {
   std::int64_t start_ns_;
   std::int64_t silence_ns_{0};
   LiveState state_{LiveState::kWaiting};
+  std::uint64_t publish_failures_{0};
+  std::uint64_t failed_in_a_row_{0};
 };
 
 }  // namespace dampline::app

@@ -25,6 +25,10 @@ void warn_of_losses(const LiveStatus& status, const LiveSurroundings& around, Ru
     result.warnings.push_back(
         fmt::format("{} records are missing in the black box: a replay will differ from this run.",
                     format_count(around.record.lost)));
+  if (around.publish_failures > 0)
+    result.warnings.push_back(
+        fmt::format("live.json could not be written {} times. Identification went on.",
+                    format_count(around.publish_failures)));
 }
 
 }  // namespace
@@ -51,6 +55,7 @@ void describe_live(const LiveStatus& status, const LiveSurroundings& around, Run
   live.recording = around.record_wanted && around.record.recording;
   live.recorded_bytes = around.record.bytes;
   live.records_lost = around.record.lost;
+  live.publish_failures = around.publish_failures;
   result.live = live;
   warn_of_losses(status, around, result);
   for (const std::string& problem : around.realtime.problems) result.notes.push_back(problem);

@@ -95,6 +95,7 @@ struct LiveSurroundings {
   std::string state;
   std::int64_t start_ns{0};  ///< monotonic
   std::int64_t silence_ns{0};
+  std::uint64_t publish_failures{0};
 };
 
 /// The live figures and what a reader must know of them; adds to a result of whatever kind.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
 #include "app/report/sections.hpp"

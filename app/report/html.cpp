@@ -22,7 +22,11 @@ std::string escape_html(std::string_view text) {
         out += "&quot;";
         break;
       default:
-        out += c;
+        // No other control character is allowed in a page.
+        if (static_cast<unsigned char>(c) >= ' ' || c == '\n' || c == '\t')
+          out += c;
+        else
+          out += "\u2423";
     }
   }
   return out;

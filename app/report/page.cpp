@@ -6,13 +6,23 @@
 #include <algorithm>
 #include <map>
 
-#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
 #include "app/report/sections.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
+
+std::string figure(const Plot& plot, const std::string& name, std::string_view caption) {
+  if (plot.panels.empty()) return "";
+  std::string drawn;
+  for (std::size_t i = 0; i < plot.panels.size(); ++i)
+    drawn += plot.panels[i].draw(fmt::format("{}-{}", name, i + 1), caption) + "\n";
+  return fmt::format(
+      "<figure><div class=\"panels{}\">\n{}</div>\n<figcaption>{}</figcaption></figure>\n",
+      plot.side_by_side ? " beside" : "", drawn, escape_html(caption));
+}
+
 namespace {
 
 constexpr std::string_view kCurveText =
@@ -68,24 +78,6 @@ constexpr std::string_view kPredictionText =
     "A record that was never fitted: measured, and predicted from its motion alone. The stretch "
     "of twenty seconds with the largest force.";
 
-/// Draws, and remembers the first reason why something could not be drawn.
-class Artist {
- public:
-  std::string figure(const PlotScript& plot, const std::string& name, std::string_view caption) {
-    if (plot.script.empty()) return "";
-    const Drawing drawing = draw(plot, name);
-    if (warning_.empty()) warning_ = drawing.problem;
-    if (drawing.svg.empty())
-      return fmt::format("<p class=\"warning\">{}</p>\n", escape_html(drawing.problem));
-    return fmt::format("<figure>\n{}\n<figcaption>{}</figcaption></figure>\n", drawing.svg,
-                       escape_html(caption));
-  }
-  [[nodiscard]] const std::string& warning() const { return warning_; }
-
- private:
-  std::string warning_;
-};
-
 std::string section(std::string_view title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", title, body);
 }
@@ -93,75 +85,71 @@ std::string section(std::string_view title, const std::string& body) {
 constexpr std::uint32_t kDrawnRecords = 6;
 
 /// What an explanation shows.
-std::string evidence_sections(const Evidence& evidence, Artist& artist) {
+std::string evidence_sections(const Evidence& evidence) {
   if (evidence.explanation.empty()) return "";
   std::string out = section("What the model lacked", verdict_section(evidence));
-  out += section("Left before and after",
-                 artist.figure(plot_residual(evidence), "residual", kResidualText));
-  out += section("Loops", artist.figure(plot_loops(evidence), "loops", kLoopText));
-  out += section("Curve before and after", artist.figure(plot_law(evidence), "law", kLawText));
+  out +=
+      section("Left before and after", figure(plot_residual(evidence), "residual", kResidualText));
+  out += section("Loops", figure(plot_loops(evidence), "loops", kLoopText));
+  out += section("Curve before and after", figure(plot_law(evidence), "law", kLawText));
   out += section("Candidates", candidate_section(evidence));
   std::string drawn = validation_section(evidence);
   const std::uint32_t records = std::min(predicted_records(evidence), kDrawnRecords);
   for (std::uint32_t r = 1; r <= records; ++r)
-    drawn += artist.figure(plot_prediction(evidence, r), fmt::format("prediction{}", r),
-                           kPredictionText);
+    drawn += figure(plot_prediction(evidence, r), fmt::format("prediction{}", r), kPredictionText);
   return out + section("Records that were never fitted", drawn);
 }
 
 /// What stands above everything else. Of an explanation, what identify says comes after it.
-std::string opening(const RunResult& result, const std::string& name, Artist& artist) {
+std::string opening(const RunResult& result, const std::string& name) {
   std::string own = fmt::format("<p class=\"lead\">{}</p>\n{}", escape_html(result.headline),
                                 warning_section(result));
   if (result.evidence.explanation.empty()) return own;
   return fmt::format("<p class=\"lead\">{}</p>\n{}<h2>The model before, in {}</h2>\n{}",
                      escape_html(explanation_headline(result.evidence)),
-                     evidence_sections(result.evidence, artist), escape_html(name), own);
+                     evidence_sections(result.evidence), escape_html(name), own);
 }
 
 }  // namespace
 
-Page make_page(const RunResult& result, const Provenance& provenance, const std::string& run_toml) {
-  Artist artist;
+std::string make_page(const RunResult& result, const Provenance& provenance,
+                      const std::string& run_toml) {
   const bool truck = result.kind == "truck";
   const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
-  std::string body = opening(result, name, artist);
+  std::string body = opening(result, name);
   body += section("Damping curve",
-                  artist.figure(plot_curve(result), "curve", truck ? kCurveText : kRigCurveText));
+                  figure(plot_curve(result), "curve", truck ? kCurveText : kRigCurveText));
   body += section("Parameters", parameter_section(result));
   body += section("Quality", quality_section(result));
   body += section("Data quality",
-                  artist.figure(plot_faults(result), "faults", kFaultText) + fault_section(result));
-  body += section("Other methods", artist.figure(plot_methods(result), "methods", kMethodText) +
-                                       method_section(result));
-  body += section("Densities", artist.figure(plot_densities(result), "densities", kDensityText));
+                  figure(plot_faults(result), "faults", kFaultText) + fault_section(result));
+  body += section("Other methods",
+                  figure(plot_methods(result), "methods", kMethodText) + method_section(result));
+  body += section("Densities", figure(plot_densities(result), "densities", kDensityText));
   body += section("Phase space", phase_section(result));
   body += section("How the estimate settled",
-                  artist.figure(plot_convergence(result), "convergence", kConvergenceText));
-  body +=
-      section("Measured and fitted force", artist.figure(plot_force(result), "force", kForceText));
-  body += section(
-      "Motion", artist.figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));
-  body += section("Events", artist.figure(plot_events(result), "events", kEventText));
-  body += section(
-      "How the acquisition kept up",
-      artist.figure(plot_lateness(result), "lateness", kLatenessText) + live_section(result));
+                  figure(plot_convergence(result), "convergence", kConvergenceText));
+  body += section("Measured and fitted force", figure(plot_force(result), "force", kForceText));
+  body += section("Motion",
+                  figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));
+  body += section("Events", figure(plot_events(result), "events", kEventText));
+  body += section("How the acquisition kept up",
+                  figure(plot_lateness(result), "lateness", kLatenessText) + live_section(result));
   body += section("What was left out, and why",
-                  artist.figure(plot_excluded(result), "excluded", "") + excluded_section(result));
+                  figure(plot_excluded(result), "excluded", "") + excluded_section(result));
   body += section("Where this comes from", provenance_section(provenance, run_toml));
-  return {fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                      "<title>dampline: {0}</title>\n<style>{1}</style></head><body>\n"
-                      "<h1>dampline: {0}</h1>\n{2}</body></html>\n",
-                      escape_html(name), kPageStyle, body),
-          artist.warning()};
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>dampline: {0}</title>\n<style>{1}</style></head><body>\n"
+      "<h1>dampline: {0}</h1>\n{2}</body></html>\n",
+      escape_html(name), kPageStyle, body);
 }
 
 void stage_report(const RunFiles& files, RunDirectory& directory) {
-  const Page page =
-      make_page(files.result, read_provenance(files.run_toml, "run.toml"), files.run_toml);
-  if (!page.warning.empty()) warn(page.warning);
-  directory.write("report.html", page.html);
+  directory.write(
+      "report.html",
+      make_page(files.result, read_provenance(files.run_toml, "run.toml"), files.run_toml));
 }
 
 }  // namespace dampline::app

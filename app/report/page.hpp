@@ -8,16 +8,11 @@
 
 namespace dampline::app {
 
-struct Page {
-  std::string html;
-  std::string warning;  ///< not empty: the plots are missing, and why
-};
-
 /// The whole run as one self-contained page: no script, no link, drawings inline.
-[[nodiscard]] Page make_page(const RunResult& result, const Provenance& provenance,
-                             const std::string& run_toml);
+[[nodiscard]] std::string make_page(const RunResult& result, const Provenance& provenance,
+                                    const std::string& run_toml);
 
-/// Stages report.html; warns where the plots are missing.
+/// Stages report.html.
 void stage_report(const RunFiles& files, RunDirectory& directory);
 
 }  // namespace dampline::app

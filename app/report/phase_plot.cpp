@@ -4,20 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-
-#include "app/report/gnuplot.hpp"
-#include "app/report/html.hpp"
+#include <utility>
+#include <vector>
 
 namespace dampline::app {
 namespace {
 
-constexpr double kWidth = 960.0;
-constexpr double kHeight = 330.0;
-constexpr double kPanel = 236.0;  // side of a panel
-constexpr double kTop = 24.0;
-constexpr double kFirstLeft = 62.0;
-constexpr double kPitch = 318.0;
 constexpr int kShades = 12;
 
 /// A channel as it is drawn.
@@ -35,15 +29,7 @@ struct Plane {
   Channel x, y;
 };
 
-/// Cells from `first` to `last` along an axis, drawn between two places on the page.
-struct Axis {
-  double low{0.0}, high{0.0};  // in the unit that is shown
-  double from{0.0}, to{0.0};   // on the page
-  [[nodiscard]] double at(double value) const {
-    return from + (to - from) * (value - low) / (high - low);
-  }
-};
-
+/// Cells from `first` to `last` along an axis.
 struct Cells {
   std::size_t first{kPictureCells}, last{0};
   void add(std::size_t i) {
@@ -66,39 +52,11 @@ double largest(const PhasePicture& p) {
   return static_cast<double>(most);
 }
 
-/// 1, 2 or 5 times a power of ten: about four ticks on the axis.
-double tick_step(double width) {
-  const double rough = width / 4.0;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  const double digit = rough / power;
-  return power * (digit < 1.5 ? 1.0 : digit < 3.5 ? 2.0 : digit < 7.5 ? 5.0 : 10.0);
-}
-
-std::string ticks(const Axis& axis, bool along_x, double base) {
-  std::string out;
-  const double step = tick_step(axis.high - axis.low);
-  for (double k = std::ceil(axis.low / step); k * step <= axis.high; k += 1.0) {
-    const double at = axis.at(k * step);
-    const std::string label = fmt::format("{:.6g}", k * step + 0.0);
-    if (along_x)
-      out += fmt::format(
-          "<path d='M{0:.1f} {1:.1f}v4'/><text x='{0:.1f}' y='{2:.1f}' text-anchor='middle'>{3}"
-          "</text>",
-          at, base, base + 17.0, label);
-    else
-      out += fmt::format(
-          "<path d='M{1:.1f} {0:.1f}h-4'/><text x='{2:.1f}' y='{3:.1f}' text-anchor='end'>{4}"
-          "</text>",
-          at, base, base - 7.0, at + 4.0, label);
-  }
-  return out;
-}
-
 /// Cells of the same shade in one path. The shade follows the root of the density, so that the
 /// rare parts are seen as well.
-std::string cells(const PhasePicture& p, const Channel& cx, const Channel& cy, const Axis& x,
-                  const Axis& y) {
-  std::array<std::string, kShades> paths;
+void add_cells(const Plane& plane, svg::Panel& panel) {
+  const PhasePicture& p = plane.picture;
+  std::array<std::vector<svg::Box>, kShades> shades;
   const double most = largest(p);
   const double width = (p.x_high - p.x_low) / kPictureCells;
   const double height = (p.y_high - p.y_low) / kPictureCells;
@@ -106,40 +64,29 @@ std::string cells(const PhasePicture& p, const Channel& cx, const Channel& cy, c
     for (std::size_t j = 0; j < kPictureCells; ++j) {
       const double share = static_cast<double>(p.density[i][j]) / most;
       if (!(share > 0.0)) continue;
-      const double left = x.at(cx.factor * (p.x_low + static_cast<double>(i) * width));
-      const double right = x.at(cx.factor * (p.x_low + static_cast<double>(i + 1) * width));
-      const double bottom = y.at(cy.factor * (p.y_low + static_cast<double>(j) * height));
-      const double top = y.at(cy.factor * (p.y_low + static_cast<double>(j + 1) * height));
       const int shade = std::min(static_cast<int>(std::sqrt(share) * kShades), kShades - 1);
-      paths[static_cast<std::size_t>(shade)] +=
-          fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h-{:.1f}z", left, top, right - left,
-                      bottom - top, right - left);
+      const auto x = [&](std::size_t cell) {
+        return plane.x.factor * (p.x_low + static_cast<double>(cell) * width);
+      };
+      const auto y = [&](std::size_t cell) {
+        return plane.y.factor * (p.y_low + static_cast<double>(cell) * height);
+      };
+      shades.at(static_cast<std::size_t>(shade)).push_back({x(i), x(i + 1), y(j), y(j + 1)});
     }
   }
-  std::string out;
-  for (int shade = 0; shade < kShades; ++shade) {
-    const std::string& path = paths[static_cast<std::size_t>(shade)];
-    if (path.empty()) continue;
-    out += fmt::format("<path fill='{}' fill-opacity='{:.2f}' stroke='none' d='{}'/>", kPlotBlue,
-                       0.08 + 0.92 * (shade + 1.0) / kShades, path);
-  }
-  return out;
+  for (int shade = 0; shade < kShades; ++shade)
+    panel.boxes(shades.at(static_cast<std::size_t>(shade)), svg::Ink::kBlue,
+                0.08 + 0.92 * (shade + 1.0) / kShades);
 }
 
-std::string section_points(const PhaseSnapshot& s, const Plane& plane, const Axis& x,
-                           const Axis& y) {
-  std::string out;
-  for (std::size_t phase = 0; phase < kSectionPhases; ++phase) {
+std::vector<svg::Point> section_points(const PhaseSnapshot& s, const Plane& plane) {
+  std::vector<svg::Point> out;
+  for (std::size_t phase = 0; phase < kSectionPhases; ++phase)
     for (std::size_t i = 0; i < s.section_count[phase]; ++i) {
       const PhasePoint& p = s.section[phase][i];
-      const double px = plane.x.factor * p.*plane.x.of;
-      const double py = plane.y.factor * p.*plane.y.of;
-      if (px < x.low || px > x.high || py < y.low || py > y.high) continue;
-      out += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='1.6'/>", x.at(px), y.at(py));
+      out.push_back({plane.x.factor * p.*plane.x.of, plane.y.factor * p.*plane.y.of});
     }
-  }
-  if (out.empty()) return out;
-  return fmt::format("<g fill='{}' stroke='none' fill-opacity='0.8'>{}</g>", kPlotOrange, out);
+  return out;
 }
 
 std::string refusal(const PhasePicture& p) {
@@ -156,60 +103,49 @@ std::string refusal(const PhasePicture& p) {
   return "";
 }
 
-std::string panel(const PhaseSnapshot& s, const Plane& plane, double left) {
+/// The part of the picture that holds anything.
+std::pair<svg::Axis, svg::Axis> axes_of(const Plane& plane) {
   const PhasePicture& p = plane.picture;
-  const double bottom = kTop + kPanel;
-  std::string out = fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill='none'/>", left,
-                                kTop, kPanel, kPanel);
-  out += fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}</text>", left + 0.5 * kPanel,
-                     bottom + 38.0, escape_html(plane.x.label));
-  out +=
-      fmt::format("<text transform='translate({} {}) rotate(-90)' text-anchor='middle'>{}</text>",
-                  left - 46.0, kTop + 0.5 * kPanel, escape_html(plane.y.label));
-  const std::string reason = refusal(p);
-  const bool drawn = p.state == PictureState::kGood ||
-                     (p.state == PictureState::kClipped && p.outside_share < 1.0);
-  if (!reason.empty())
-    out += fmt::format("<text x='{}' y='{}' text-anchor='middle' style='fill:{}'>{}</text>",
-                       left + 0.5 * kPanel, drawn ? kTop - 8.0 : kTop + 0.5 * kPanel, kPlotOrange,
-                       reason);
-  if (!drawn) return out;
   Cells columns;
   Cells rows;
-  for (std::size_t i = 0; i < kPictureCells; ++i) {
+  for (std::size_t i = 0; i < kPictureCells; ++i)
     for (std::size_t j = 0; j < kPictureCells; ++j) {
       if (!(p.density[i][j] > 0.0F)) continue;
       columns.add(i);
       rows.add(j);
     }
-  }
   const auto [x_low, x_high] = columns.range(p.x_low, p.x_high);
   const auto [y_low, y_high] = rows.range(p.y_low, p.y_high);
-  const Axis x{plane.x.factor * x_low, plane.x.factor * x_high, left, left + kPanel};
-  const Axis y{plane.y.factor * y_low, plane.y.factor * y_high, bottom, kTop};
-  return cells(p, plane.x, plane.y, x, y) + section_points(s, plane, x, y) + out +
-         ticks(x, true, bottom) + ticks(y, false, left);
+  return {{plane.x.label, plane.x.factor * x_low, plane.x.factor * x_high},
+          {plane.y.label, plane.y.factor * y_low, plane.y.factor * y_high}};
+}
+
+svg::Panel phase_panel(const PhaseSnapshot& s, const Plane& plane) {
+  constexpr double kSquare = 400.0;
+  const PhasePicture& p = plane.picture;
+  const std::string reason = refusal(p);
+  const bool drawn = p.state == PictureState::kGood ||
+                     (p.state == PictureState::kClipped && p.outside_share < 1.0);
+  if (!drawn) {
+    svg::Panel empty{{plane.x.label}, {plane.y.label}, kSquare};
+    empty.title(reason);
+    return empty;
+  }
+  auto [x, y] = axes_of(plane);
+  svg::Panel panel{std::move(x), std::move(y), kSquare};
+  panel.title(reason);
+  add_cells(plane, panel);
+  panel.dots(section_points(s, plane), svg::Ink::kOrange, 1.8);
+  return panel;
 }
 
 }  // namespace
 
-std::string plot_phase(const PhaseSnapshot& s, const std::string& name) {
-  const std::array<Plane, 3> planes{Plane{s.velocity_over_deflection, kDeflection, kVelocity},
-                                    Plane{s.accel_over_deflection, kDeflection, kAccel},
-                                    Plane{s.accel_over_velocity, kVelocity, kAccel}};
-  std::string out = fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' id='{}' viewBox='0 0 {} {}' width='{}' height='{}' "
-      "role='img' font-family='Helvetica,Arial,DejaVu Sans,sans-serif' font-size='13'>"
-      "<rect width='100%' height='100%' fill='#ffffff'/><g stroke='#555555' stroke-width='1' "
-      "fill='none'><g stroke-width='1'>",
-      escape_html(name), kWidth, kHeight, kWidth, kHeight);
-  out += "<style>#" + escape_html(name) + " text{stroke:none;fill:#333333}</style>";
-  double left = kFirstLeft;
-  for (const Plane& plane : planes) {
-    out += panel(s, plane, left);
-    left += kPitch;
-  }
-  return out + "</g></g></svg>";
+Plot plot_phase(const PhaseSnapshot& s) {
+  return {{phase_panel(s, {s.velocity_over_deflection, kDeflection, kVelocity}),
+           phase_panel(s, {s.accel_over_deflection, kDeflection, kAccel}),
+           phase_panel(s, {s.accel_over_velocity, kVelocity, kAccel})},
+          true};
 }
 
 std::string describe_period(const PhaseSnapshot& s) {

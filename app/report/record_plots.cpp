@@ -6,11 +6,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
 #include "app/report/sections.hpp"
@@ -18,77 +18,68 @@
 #include "app/text/summary.hpp"
 
 namespace dampline::app {
+namespace {
 
-PlotScript plot_motion(const RunResult& result) {
+using svg::Box;
+using svg::Ink;
+using svg::kLaneHalf;
+using svg::Point;
+
+constexpr const char* kTime = "time in the record (s)";
+
+/// One column of a table over another, thinned to what can be seen.
+template <class Row>
+std::vector<Point> column(const std::vector<Row>& rows, double Row::*x, double x_factor,
+                          double Row::*y, double y_factor) {
+  std::vector<Point> out;
+  for (std::size_t i = 0; i < rows.size(); i += plot_stride(rows.size()))
+    out.push_back({x_factor * rows[i].*x, y_factor * rows[i].*y});
+  return out;
+}
+
+}  // namespace
+
+Plot plot_motion(const RunResult& result) {
   if (result.motion.size() < 2) return {};
-  std::string script = fmt::format("{}{}{}", kPlotFrame, kPlotKeyAbove, "$motion << EOD\n");
-  for (std::size_t i = 0; i < result.motion.size(); i += plot_stride(result.motion.size())) {
-    const MotionRow& r = result.motion[i];
-    script += fmt::format("{} {} {}\n", r.time_s, 1e3 * r.deflection_m, 1e3 * r.velocity_mps);
-  }
-  script += fmt::format("EOD\nset multiplot\nset xrange [{}:{}]\n", result.motion.front().time_s,
-                        result.motion.back().time_s);
-  script += fmt::format(
-      "set tmargin at screen 0.94\nset bmargin at screen 0.59\nset format x ''\nset ylabel 'y "
-      "(mm)'\n"
-      "plot $motion using 1:2 with lines lw 1 lc rgb '{}' title 'relative deflection y'\n"
-      "set tmargin at screen 0.52\nset bmargin at screen 0.16\nset format x '%g'\n"
-      "set xlabel 'time in the record (s)'\nset ylabel 'v (mm/s)'\n"
-      "plot $motion using 1:3 with lines lw 1 lc rgb '{}' title 'relative velocity v'\nunset "
-      "multiplot\n",
-      kPlotBlue, kPlotOrange);
-  return {script, 960, 480};
+  constexpr double kLow = 150.0;
+  const auto over_time = [&](double MotionRow::*of) {
+    return column(result.motion, &MotionRow::time_s, 1.0, of, 1e3);
+  };
+  svg::Panel deflection{{kTime}, {"y (mm)"}, kLow};
+  deflection.line(over_time(&MotionRow::deflection_m), {Ink::kBlue, 1.0}, "relative deflection y");
+  svg::Panel velocity{{kTime}, {"v (mm/s)"}, kLow};
+  velocity.line(over_time(&MotionRow::velocity_mps), {Ink::kOrange, 1.0}, "relative velocity v");
+  return {{deflection, velocity}};
 }
 
-PlotScript plot_force(const RunResult& result) {
+Plot plot_force(const RunResult& result) {
   if (result.force.size() < 2) return {};
-  std::string script = fmt::format("{}{}{}", kPlotFrame, kPlotKeyAbove, "$force << EOD\n");
-  for (std::size_t i = 0; i < result.force.size(); i += plot_stride(result.force.size())) {
-    const ForceRow& r = result.force[i];
-    script +=
-        fmt::format("{} {} {} {}\n", r.time_s, 1e3 * r.velocity_mps, r.measured_n, r.fitted_n);
+  constexpr double kDot = 0.8;
+  svg::Panel time{{kTime}, {"force (N)"}};
+  svg::Panel velocity{{"velocity (mm/s)"}, {"force (N)"}};
+  for (const auto& [of, ink, name] : {std::tuple{&ForceRow::measured_n, Ink::kBlue, "measured"},
+                                      std::tuple{&ForceRow::fitted_n, Ink::kOrange, "fitted"}}) {
+    time.line(column(result.force, &ForceRow::time_s, 1.0, of, 1.0), {ink, 1.4}, name);
+    velocity.dots(column(result.force, &ForceRow::velocity_mps, 1e3, of, 1.0), ink, kDot, name);
   }
-  script += fmt::format(
-      "EOD\nset multiplot\nset ylabel 'force (N)'\nset tmargin at screen 0.955\nset bmargin at "
-      "screen 0.6\n"
-      "set xlabel 'time in the record (s)'\nset xrange [{2}:{3}]\n"
-      "plot $force using 1:3 with lines lw 1.4 lc rgb '{0}' title 'measured', '' using 1:4 with "
-      "lines "
-      "lw 1.4 lc rgb '{1}' title 'fitted'\n"
-      "set tmargin at screen 0.475\nset bmargin at screen 0.115\nset xlabel 'velocity (mm/s)'\n"
-      "set xrange [*:*]\nplot $force using 2:3 with points pt 7 ps 0.18 lc rgb '{0}' title "
-      "'measured', "
-      "'' using 2:4 with points pt 7 ps 0.18 lc rgb '{1}' title 'fitted'\nunset multiplot\n",
-      kPlotBlue, kPlotOrange, result.force.front().time_s, result.force.back().time_s);
-  return {script, 960, 640};
+  return {{time, velocity}};
 }
 
-PlotScript plot_excluded(const RunResult& result) {
+Plot plot_excluded(const RunResult& result) {
   if (result.excluded.empty()) return {};
   std::map<std::string, std::size_t> row_of;
-  for (const Excluded& e : result.excluded) row_of.emplace(e.reason, row_of.size());
-  std::string script =
-      fmt::format("{}{}", kPlotFrame, "unset key\nset lmargin at screen 0.2\n$spans << EOD\n");
+  std::vector<svg::Lane> lanes;
+  std::vector<Box> spans;
   for (const Excluded& e : result.excluded) {
-    const auto row = static_cast<double>(row_of[e.reason]);
-    script += fmt::format("{} {} {} {} {} {}\n", 0.5 * (e.start_s + e.end_s), row, e.start_s,
-                          e.end_s, row - 0.35, row + 0.35);
+    const auto [place, is_new] = row_of.emplace(e.reason, lanes.size());
+    if (is_new) lanes.push_back({plot_label(e.reason), ""});
+    const auto row = static_cast<double>(place->second);
+    spans.push_back({e.start_s, e.end_s, row - kLaneHalf, row + kLaneHalf});
   }
-  script += fmt::format("EOD\nset xrange [0:{}]\nset yrange [-0.6:{}]\n",
-                        std::max(result.duration_s, result.excluded.back().end_s),
-                        static_cast<double>(row_of.size()) - 0.4);
-  script += "set ytics scale 0 (";
-  std::string_view comma;
-  for (const auto& [reason, row] : row_of) {
-    script += fmt::format("{}'{}' {}", comma, plot_label(reason), row);
-    comma = ",";
-  }
-  script += fmt::format(
-      ")\nunset grid\nset xlabel 'time in the record (s)'\nset style fill solid 0.8 border lc rgb "
-      "'{0}'\n"
-      "plot $spans using 1:2:3:4:5:6 with boxxyerror lc rgb '{0}'\n",
-      kPlotOrange);
-  return {script, 960, 90 + 40 * static_cast<int>(row_of.size())};
+  svg::Panel panel{{kTime, 0.0, std::max(result.duration_s, result.excluded.back().end_s)},
+                   std::move(lanes)};
+  panel.boxes(spans, Ink::kOrange, 0.9);
+  return {{panel}};
 }
 
 namespace {
@@ -112,185 +103,133 @@ Moments moments_of(const DensityTable& table) {
   return {mean, std::sqrt(std::max(0.0, second / sum - mean * mean))};
 }
 
-/// In mm and mm/s. Columns: centre, density, normal density.
-std::string density_data(const DensityTable& table, std::size_t number) {
-  const Moments m = moments_of(table);
-  std::string data = fmt::format("$density{} << EOD\n", number);
-  for (const DensityRow& r : table.rows) {
-    const double z = m.std > 0.0 ? (r.centre - m.mean) / m.std : 0.0;
-    const double normal =
-        m.std > 0.0 ? std::exp(-0.5 * z * z) / (m.std * std::sqrt(2.0 * std::numbers::pi)) : 0.0;
-    data += fmt::format("{} {} {}\n", 1e3 * r.centre, 1e-3 * r.density, 1e-3 * normal);
-  }
-  return data + "EOD\n";
-}
-
 bool is_velocity(const DensityTable& table) { return table.quantity == "velocity_mps"; }
 
+/// In mm and mm/s, beside the normal density of the same moments.
+svg::Panel density_panel(const DensityTable& table) {
+  const bool velocity = is_velocity(table);
+  const Moments m = moments_of(table);
+  std::vector<Box> bars;
+  std::vector<Point> normal;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const DensityRow& r = table.rows[i];
+    const double next = i + 1 < table.rows.size() ? table.rows[i + 1].centre - r.centre
+                        : i > 0                   ? r.centre - table.rows[i - 1].centre
+                                                  : 0.0;
+    bars.push_back(
+        {1e3 * (r.centre - 0.5 * next), 1e3 * (r.centre + 0.5 * next), 0.0, 1e-3 * r.density});
+    const double z = (r.centre - m.mean) / m.std;
+    normal.push_back({1e3 * r.centre,
+                      1e-3 * std::exp(-0.5 * z * z) / (m.std * std::sqrt(2.0 * std::numbers::pi))});
+  }
+  svg::Panel panel{{velocity ? "relative velocity v (mm/s)" : "relative deflection y (mm)"},
+                   {velocity ? "density (s/mm)" : "density (1/mm)", 0.0}};
+  panel.boxes(bars, velocity ? Ink::kOrange : Ink::kBlue);
+  if (m.std > 0.0) panel.line(std::move(normal), {Ink::kGrey, 1.4}, "normal");
+  return panel;
+}
+
 }  // namespace
 
-PlotScript plot_densities(const RunResult& result) {
-  if (result.densities.empty()) return {};
-  std::string script = fmt::format("{}unset key\n", kPlotFrame);
-  for (std::size_t i = 0; i < result.densities.size(); ++i)
-    script += density_data(result.densities[i], i);
-  script += fmt::format("set multiplot layout 1,{}\nset yrange [0:*]\n", result.densities.size());
-  for (std::size_t i = 0; i < result.densities.size(); ++i) {
-    const bool velocity = is_velocity(result.densities[i]);
-    const double left = 0.09 + 0.5 * static_cast<double>(i);
-    script += fmt::format(
-        "set lmargin at screen {:.2f}\nset rmargin at screen {:.2f}\n"
-        "set xlabel '{}'\nset ylabel 'density ({})'\n"
-        "plot $density{} using 1:2 with boxes fs solid 0.45 noborder lc rgb '{}', "
-        "'' using 1:3 with lines lw 1.2 lc rgb '#555555'\n",
-        left, left + 0.39, velocity ? "relative velocity v (mm/s)" : "relative deflection y (mm)",
-        velocity ? "s/mm" : "1/mm", i, velocity ? kPlotOrange : kPlotBlue);
-  }
-  return {script + "unset multiplot\n", 960, 380};
+Plot plot_densities(const RunResult& result) {
+  Plot plot{{}, true};
+  for (const DensityTable& table : result.densities) plot.panels.push_back(density_panel(table));
+  return plot;
 }
 
 namespace {
 
-std::string convergence_panel(const Convergence& convergence, std::size_t i, double top,
-                              double bottom, bool last) {
-  const auto& rows = convergence.rows;
-  const PlotUnit unit = plot_unit(convergence.units[i], std::fabs(rows.back().estimates[i].value));
-  const double scale = unit.factor;
-  std::string out = fmt::format("$p{} << EOD\n", i);
-  for (const Convergence::Row& row : convergence.rows)
-    out += fmt::format("{} {} {}\n", row.time_s, scale * row.estimates[i].value,
-                       scale * row.estimates[i].std);
-  const Estimate& final_estimate = convergence.rows.back().estimates[i];
-  // The first rows may be wild: show what lies within a few of the median deviation.
+svg::Panel convergence_panel(const Convergence& convergence, std::size_t i) {
+  constexpr double kLow = 150.0;
+  const Estimate& end = convergence.rows.back().estimates[i];
+  const PlotUnit unit = plot_unit(convergence.units[i], std::fabs(end.value));
+  std::vector<Point> middle;
+  std::vector<Point> lower;
+  std::vector<Point> upper;
   std::vector<double> deviations;
-  for (const Convergence::Row& row : convergence.rows) deviations.push_back(row.estimates[i].std);
-  std::nth_element(deviations.begin(),
-                   deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2),
-                   deviations.end());
-  const double half =
-      scale * std::max({8.0 * deviations[deviations.size() / 2], 10.0 * final_estimate.std,
-                        0.005 * std::fabs(final_estimate.value)});
-  const double centre = scale * final_estimate.value;
-  out += fmt::format("EOD\nset tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
-  if (half > 0.0) out += fmt::format("set yrange [{}:{}]\n", centre - half, centre + half);
-  out += last ? "set xlabel 'time in the record (s)'\nset format x '%g'\n"
-              : "unset xlabel\nset format x ''\n";
-  out += fmt::format(
-      "set ylabel '{0} ({1})'\nplot $p{2} using 1:($2-2*$3):($2+2*$3) with filledcurves lc rgb "
-      "'{3}' "
-      "title '± 2 standard deviations', '' using 1:2 with lines lw 2 lc rgb '{3}' title '{0}', {4} "
-      "with lines dt 2 lw 1 lc rgb '#777777' title 'at the end'\n",
-      plot_label(convergence.names[i]), unit.name, i, kPlotBlue, centre);
-  return out;
-}
-
-}  // namespace
-
-PlotScript plot_convergence(const RunResult& result) {
-  const Convergence& convergence = result.convergence;
-  if (convergence.rows.size() < 2 || convergence.names.empty()) return {};
-  const auto panels = static_cast<double>(convergence.names.size());
-  const int height = 90 + 210 * static_cast<int>(convergence.names.size());
-  const double bottom = 62.0 / height;
-  const double step = (0.999 - bottom) / panels;
-  std::string script =
-      fmt::format("{}{}{}", kPlotFrame, kPlotKeyAbove, "set multiplot\nset xrange [0:*]\n");
-  for (std::size_t i = 0; i < convergence.names.size(); ++i) {
-    const double top = 0.999 - 26.0 / height - step * static_cast<double>(i);
-    script += convergence_panel(convergence, i, top, top - step + 36.0 / height,
-                                i + 1 == convergence.names.size());
+  for (const Convergence::Row& row : convergence.rows) {
+    const Estimate& e = row.estimates[i];
+    middle.push_back({row.time_s, unit.factor * e.value});
+    lower.push_back({row.time_s, unit.factor * (e.value - 2.0 * e.std)});
+    upper.push_back({row.time_s, unit.factor * (e.value + 2.0 * e.std)});
+    deviations.push_back(std::isfinite(e.std) ? e.std : 0.0);
   }
-  return {script + "unset multiplot\n", 960, height};
+  // The first rows may be wild: show what lies within a few of the median deviation.
+  const auto median = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
+  std::nth_element(deviations.begin(), median, deviations.end());
+  const double half =
+      unit.factor * std::max({8.0 * *median, 10.0 * end.std, 0.005 * std::fabs(end.value)});
+  const double centre = unit.factor * end.value;
+  svg::Axis y{fmt::format("{} ({})", plot_label(convergence.names[i]), unit.name)};
+  if (half > 0.0) y.low = centre - half;
+  if (half > 0.0) y.high = centre + half;
+  svg::Panel panel{{kTime, 0.0}, std::move(y), kLow};
+  panel.band(lower, upper, Ink::kBlue, "± 2 standard deviations");
+  panel.line({{0.0, centre}, {convergence.rows.back().time_s, centre}}, {Ink::kGrey, 1.2, true},
+             "at the end");
+  panel.line(std::move(middle), {Ink::kBlue, 2.0}, plot_label(convergence.names[i]));
+  return panel;
 }
-
-namespace {
-
-constexpr std::size_t kMostTicks = 4000;  // per kind; more would be one black bar all the same
 
 }  // namespace
 
-PlotScript plot_events(const RunResult& result) {
+Plot plot_convergence(const RunResult& result) {
+  const Convergence& convergence = result.convergence;
+  Plot plot;
+  if (convergence.rows.size() < 2) return plot;
+  for (std::size_t i = 0; i < convergence.names.size(); ++i)
+    plot.panels.push_back(convergence_panel(convergence, i));
+  return plot;
+}
+
+Plot plot_events(const RunResult& result) {
   if (result.events.empty()) return {};
+  constexpr std::size_t kMostTicks = 4000;  // per kind; more would be one black bar all the same
   std::map<std::string, std::vector<double>> times;
   for (const RunEvent& e : result.events) times[e.name].push_back(e.time_s);
-  std::string script =
-      fmt::format("{}{}", kPlotFrame, "unset key\nset lmargin at screen 0.2\n$events << EOD\n");
-  std::string labels;
-  std::size_t row = 0;
+  std::vector<svg::Lane> lanes;
+  std::vector<Box> ticks;
   for (const auto& [name, moments] : times) {
+    const auto row = static_cast<double>(lanes.size());
     const std::size_t stride = (moments.size() + kMostTicks - 1) / kMostTicks;
     for (std::size_t i = 0; i < moments.size(); i += stride)
-      script += fmt::format("{} {} 0 0.6\n", moments[i], static_cast<double>(row) - 0.3);
-    labels += fmt::format("{}'{}' {}", row == 0 ? "" : ",", plot_label(name), row);
-    ++row;
+      ticks.push_back({moments[i], moments[i], row - kLaneHalf, row + kLaneHalf});
+    lanes.push_back({plot_label(name), format_count(moments.size())});
   }
   const double first = std::min(0.0, result.events.front().time_s);
   const double last = std::max(result.duration_s, result.events.back().time_s);
   const double margin = 0.01 * (last - first);
-  script += fmt::format(
-      "EOD\nset xrange [{}:{}]\nset yrange [-0.6:{}]\nset ytics scale 0 ({})\nunset grid\n"
-      "set xlabel 'time in the record (s)'\n"
-      "plot $events using 1:2:3:4 with vectors nohead lw 1.6 lc rgb '{}'\n",
-      first - margin, last + margin, static_cast<double>(row) - 0.4, labels, kPlotBlue);
-  return {script, 960, 90 + 32 * static_cast<int>(row)};
+  svg::Panel panel{{kTime, first - margin, last + margin}, std::move(lanes)};
+  panel.boxes(ticks, Ink::kBlue, 1.0);
+  return {{panel}};
 }
 
-namespace {
-
-constexpr double kLeastUs = 1e-3;  // a nanosecond: a logarithmic axis has no 0
-
-struct Mark {
-  const char* name;
-  double us;
-};
-
-std::string lateness_data(const std::vector<LatenessRow>& rows) {
-  std::string data = "$lateness << EOD\n";
-  for (const LatenessRow& r : rows)
-    data += fmt::format("{} {} {}\n", std::max(r.from_us, kLeastUs), std::max(r.to_us, kLeastUs),
-                        r.frames);
-  return data + "EOD\n";
-}
-
-/// A line and its name for each, one below the other so that no name covers another.
-std::string marks_of(const LiveFigures& f) {
-  const std::array<Mark, 5> marks{{{"p50", f.lateness_p50_us},
-                                   {"p90", f.lateness_p90_us},
-                                   {"p99", f.lateness_p99_us},
-                                   {"p99.9", f.lateness_p999_us},
-                                   {"largest", f.lateness_max_us}}};
-  std::string script;
-  double height = 0.95;
-  for (const Mark& mark : marks) {
-    const double x = std::max(mark.us, kLeastUs);
-    script += fmt::format(
-        "set arrow from {0},graph 0 to {0},graph {1:.2f} nohead lw 1.2 lc rgb '{2}' front\n"
-        "set label '{3} {4}' at {0},graph {1:.2f} offset 0.4,0 front\n",
-        x, height, kPlotOrange, mark.name, format_microseconds(mark.us));
-    height -= 0.08;
-  }
-  return script;
-}
-
-}  // namespace
-
-PlotScript plot_lateness(const RunResult& result) {
+Plot plot_lateness(const RunResult& result) {
   if (result.lateness.empty() || !result.live) return {};
-  constexpr double kRoomForNames = 8.0;
-  const double left = std::max(result.lateness.front().from_us, kLeastUs);
-  const double right = kRoomForNames * std::max(result.lateness.back().to_us, kLeastUs);
+  constexpr double kLeastUs = 1e-3;  // a nanosecond: a logarithmic axis has no 0
+  constexpr double kBelowOne = 0.5;
   std::uint64_t most = 0;
-  for (const LatenessRow& r : result.lateness) most = std::max(most, r.frames);
-  std::string script = fmt::format("{}unset key\nset logscale xy\n", kPlotFrame);
-  script += lateness_data(result.lateness) + marks_of(*result.live);
-  // Decades of frames above the highest bar, where the names stand.
-  script += fmt::format(
-      "set xrange [{}:{}]\nset yrange [0.5:{}]\nset format xy '10^{{%T}}'\n"
-      "set xlabel 'from a frame''s stamp to its result (µs)'\nset ylabel 'frames'\n"
-      "plot $lateness using 1:(0.5):1:2:(0.5):3 with boxxyerror fs solid 0.45 noborder "
-      "lc rgb '{}'\n",
-      0.8 * left, right, 2.0 * std::pow(static_cast<double>(most), 1.6), kPlotBlue);
-  return {script, 960, 420};
+  std::vector<Box> bars;
+  for (const LatenessRow& r : result.lateness) {
+    most = std::max(most, r.frames);
+    bars.push_back({std::max(r.from_us, kLeastUs), std::max(r.to_us, kLeastUs), kBelowOne,
+                    static_cast<double>(r.frames)});
+  }
+  // Decades of frames above the highest bar, where the names stand, one below the other.
+  svg::Panel panel{{"from a frame's stamp to its result (µs)", 0.8 * bars.front().left,
+                    8.0 * bars.back().right, true},
+                   {"frames", kBelowOne, 2.0 * std::pow(static_cast<double>(most), 1.6), true}};
+  panel.boxes(bars, Ink::kBlue);
+  const LiveFigures& f = *result.live;
+  double height = 0.97;
+  for (const auto& [name, us] :
+       {std::pair{"p50", f.lateness_p50_us}, std::pair{"p90", f.lateness_p90_us},
+        std::pair{"p99", f.lateness_p99_us}, std::pair{"p99.9", f.lateness_p999_us},
+        std::pair{"largest", f.lateness_max_us}}) {
+    panel.flag(std::max(us, kLeastUs), height, fmt::format("{} {}", name, format_microseconds(us)));
+    height -= 0.085;
+  }
+  return {{panel}};
 }
 
 namespace {
@@ -306,74 +245,43 @@ std::size_t rank_of(const std::string& channel) {
                                   kOrder.begin());
 }
 
-/// One line of the figure: a fault of a channel, or a reason to leave blocks out.
-struct Lane {
-  std::string label;
-  std::string size;
-  std::vector<Span> spans;
-  std::optional<Span> seen;
-};
+}  // namespace
 
 /// Channel by channel; below them what was left out of the estimate.
-std::vector<Lane> lanes_of(const RunResult& result) {
+Plot plot_faults(const RunResult& result) {
+  if (result.faults.list.empty()) return {};
   std::vector<const FaultFinding*> sorted;
   for (const FaultFinding& f : result.faults.list) sorted.push_back(&f);
   std::stable_sort(sorted.begin(), sorted.end(), [](const FaultFinding* a, const FaultFinding* b) {
     return rank_of(a->channel) < rank_of(b->channel);
   });
-  std::vector<Lane> lanes;
-  lanes.reserve(sorted.size() + result.excluded.size());
-  for (const FaultFinding* f : sorted)
-    lanes.push_back({label_of(*f), fault_size(*f), f->spans, Span{f->time_s, f->last_s}});
+  std::vector<svg::Lane> lanes;
+  std::vector<Box> spoilt;
+  std::vector<Box> left_out;
+  std::vector<Point> seen;
+  const auto box = [](double from, double to, std::size_t row) {
+    const auto y = static_cast<double>(row);
+    return Box{from, to, y - kLaneHalf, y + kLaneHalf};
+  };
+  for (const FaultFinding* f : sorted) {
+    const std::size_t row = lanes.size();
+    for (const Span& s : f->spans) spoilt.push_back(box(s.start_s, s.end_s, row));
+    const auto y = static_cast<double>(row);
+    seen.insert(seen.end(), {{f->time_s, y}, {f->last_s, y}, svg::kBreak});
+    lanes.push_back({label_of(*f), fault_size(*f)});
+  }
   std::map<std::string, std::size_t> lane;
   for (const Excluded& e : result.excluded) {
     const auto [place, is_new] = lane.emplace(e.reason, lanes.size());
-    if (is_new) lanes.push_back({"left out: " + plot_label(e.reason), "", {}, std::nullopt});
-    lanes[place->second].spans.push_back({e.start_s, e.end_s});
+    if (is_new) lanes.push_back({"left out: " + plot_label(e.reason), ""});
+    left_out.push_back(box(e.start_s, e.end_s, place->second));
   }
-  return lanes;
-}
-
-}  // namespace
-
-PlotScript plot_faults(const RunResult& result) {
-  if (result.faults.list.empty()) return {};
-  const std::vector<Lane> lanes = lanes_of(result);
-  std::array<std::string, 2> spans;  // that faults spoil, and that were left out
-  std::string seen;
-  std::string ticks;
-  std::string sizes;
-  for (std::size_t row = 0; row < lanes.size(); ++row) {
-    const Lane& lane = lanes[row];
-    const auto y = static_cast<double>(lanes.size() - 1 - row);
-    for (const Span& s : lane.spans)
-      spans[lane.seen ? 0 : 1] += fmt::format("{} {} {} {} {} {}\n", 0.5 * (s.start_s + s.end_s), y,
-                                              s.start_s, s.end_s, y - 0.3, y + 0.3);
-    if (lane.seen)
-      seen +=
-          fmt::format("{} {} {} 0\n", lane.seen->start_s, y, lane.seen->end_s - lane.seen->start_s);
-    ticks += fmt::format("{}'{}' {}", row == 0 ? "" : ",", lane.label, y);
-    sizes +=
-        fmt::format("set label '{}' at graph 1.01,first {} left tc rgb '#333333'\n", lane.size, y);
-  }
-  std::string script = fmt::format(
-      "{}unset key\nset lmargin at screen 0.27\nset rmargin at screen 0.86\n{}", kPlotFrame, sizes);
-  for (std::size_t i = 0; i < spans.size(); ++i)
-    if (!spans[i].empty()) script += fmt::format("$spans{} << EOD\n{}EOD\n", i, spans[i]);
-  script += fmt::format(
-      "$seen << EOD\n{}EOD\nset xrange [0:{}]\nset yrange [-0.6:{}]\nset ytics scale 0 ({})\n"
-      "unset grid\nset xlabel 'time in the record (s)'\nset style fill solid 0.6 noborder\nplot ",
-      seen, std::max(result.duration_s, 1.0), static_cast<double>(lanes.size()) - 0.4, ticks);
-  constexpr std::array<std::string_view, 2> kColours{kPlotOrange, "#888888"};
-  for (std::size_t i = 0; i < spans.size(); ++i)
-    if (!spans[i].empty())
-      script +=
-          fmt::format("$spans{} using 1:2:3:4:5:6 with boxxyerror lc rgb '{}', ", i, kColours[i]);
-  script += fmt::format(
-      "$seen using 1:2:3:4 with vectors nohead lw 2 lc rgb '{0}', "
-      "'' using 1:2 with points pt 7 ps 0.6 lc rgb '{0}'\n",
-      kPlotBlue);
-  return {script, 960, 90 + 34 * static_cast<int>(lanes.size())};
+  svg::Panel panel{{kTime, 0.0, std::max(result.duration_s, 1.0)}, std::move(lanes)};
+  panel.boxes(spoilt, Ink::kOrange, 0.7, spoilt.empty() ? "" : "spoilt");
+  panel.boxes(left_out, Ink::kGrey, 0.7, left_out.empty() ? "" : "left out");
+  panel.dots(seen, Ink::kBlue, 3.0);
+  panel.line(std::move(seen), {Ink::kBlue, 2.0}, "from first to last seen");
+  return {{panel}};
 }
 
 }  // namespace dampline::app

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "app/report/gnuplot.hpp"
 #include "app/report/html.hpp"
 #include "app/report/phase_plot.hpp"
+#include "app/report/plots.hpp"
 #include "app/text/format.hpp"
 #include "app/text/summary.hpp"
 
@@ -199,7 +199,8 @@ std::string live_section(const RunResult& result) {
       {"memory locked", f.memory_locked ? "yes" : "no", ""},
       {"real-time scheduling", f.realtime_scheduled ? "yes" : "no", ""},
       {"recorded", mebibytes(f.recorded_bytes), "in the black box"},
-      {"records lost", format_count(f.records_lost), "that the black box could not take"}};
+      {"records lost", format_count(f.records_lost), "that the black box could not take"},
+      {"publications failed", format_count(f.publish_failures), "of live.json"}};
   if (f.first_sample_s)
     rows.push_back({"first sample", fmt::format("{:.3f} s", *f.first_sample_s),
                     "after the start of the program"});
@@ -217,9 +218,8 @@ constexpr std::string_view kPhaseText =
 
 std::string phase_section(const RunResult& result) {
   if (!result.phase) return "";
-  return fmt::format("<figure>\n{}\n<figcaption>{} {}</figcaption></figure>\n",
-                     plot_phase(*result.phase, "phase-planes"), kPhaseText,
-                     escape_html(describe_period(*result.phase)));
+  return figure(plot_phase(*result.phase), "phase",
+                fmt::format("{} {}", kPhaseText, describe_period(*result.phase)));
 }
 
 std::string fault_size(const FaultFinding& fault) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "app/run/directory.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <charconv>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <system_error>
+#include <utility>
 
 #include "app/error.hpp"
 #include "app/run/json.hpp"
@@ -23,131 +23,105 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
-/// What an earlier run may have left and this one may not write.
-constexpr std::array<std::string_view, 18> kRunFiles{
-    "parameters.json", "curve.csv",       "densities.csv", "phase.json",       "state.dls",
-    "report.html",     "convergence.csv", "excluded.csv",  "motion.csv",       "force.csv",
-    "events.csv",      "lateness.csv",    "live.json",     "explanation.json", "residual.csv",
-    "loops.csv",       "law.csv",         "prediction.csv"};
-/// What a live run writes before its end: an interrupted one is continued beside it.
-constexpr std::array<std::string_view, 2> kLiveFiles{"blackbox", "live.json"};
+/// What a run writes beside the black box.
+constexpr std::array<std::string_view, 19> kRunFiles{
+    kMarker,        "parameters.json", "curve.csv",       "densities.csv", "phase.json",
+    "state.dls",    "report.html",     "convergence.csv", "excluded.csv",  "motion.csv",
+    "force.csv",    "events.csv",      "lateness.csv",    "live.json",     "explanation.json",
+    "residual.csv", "loops.csv",       "law.csv",         "prediction.csv"};
 
-/// Nothing but what an interrupted live run left behind.
-bool only_live_files(const fs::path& folder) {
+bool is_run_file(const std::string& name) {
+  return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end() ||
+         name.starts_with(kPartial);
+}
+
+/// Nothing but what an interrupted run left behind, which is no run and is continued.
+bool only_remains(const fs::path& folder) {
   return std::all_of(fs::directory_iterator{folder}, fs::directory_iterator{},
                      [](const fs::directory_entry& entry) {
                        const std::string name = entry.path().filename().string();
-                       return name.starts_with(".partial-") ||
-                              std::find(kLiveFiles.begin(), kLiveFiles.end(), name) !=
-                                  kLiveFiles.end();
+                       return name == "blackbox" || (name != kMarker && is_run_file(name));
                      });
 }
 
-[[noreturn]] void fail(const fs::path& path, std::string_view action, int error) {
-  throw RunError{fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error))};
+/// A name that can be exchanged: no link, no ".".
+fs::path plain(const fs::path& target) {
+  std::error_code error;
+  fs::path whole = fs::weakly_canonical(fs::absolute(target), error);
+  if (error) fail_io(target, "write", error.value());
+  return whole.has_filename() ? whole : whole.parent_path();
 }
 
-void write_all(int descriptor, std::string_view content, const fs::path& file) {
-  while (!content.empty()) {
-    const ssize_t count = ::write(descriptor, content.data(), content.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(file, "write", errno);
-    content.remove_prefix(static_cast<std::size_t>(count));
-  }
-}
-
-/// Closes on every way out; close() itself may report that the disk is full.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_{number} {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  [[nodiscard]] int get() const { return number_; }
-  [[nodiscard]] int close() {
-    const int result = ::close(number_);
-    number_ = -1;
-    return result;
-  }
-
- private:
-  int number_;
-};
-
-void write_new(const fs::path& file, std::string_view content) {
-  Descriptor out{::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
-  if (out.get() < 0) fail(file, "create", errno);
-  write_all(out.get(), content, file);
-  if (::fsync(out.get()) != 0) fail(file, "write", errno);
-  if (out.close() != 0) fail(file, "write", errno);
-}
-
-void move_file(const fs::path& from, const fs::path& to) {
+void rename_file(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::rename(from, to, error);
-  if (error) fail(to, "write", error.value());
-}
-
-void sync_directory(const fs::path& folder) {
-  const Descriptor handle{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-  if (handle.get() >= 0) ::fsync(handle.get());
+  if (error) fail_io(to, "write", error.value());
 }
 
 }  // namespace
 
-void write_file(const fs::path& file, std::string_view content) {
-  fs::path staged = file;
-  staged += fmt::format(".partial-{}", ::getpid());
+RunDirectory::RunDirectory(fs::path target, bool replace)
+    : shown_{std::move(target)}, target_{plain(shown_)} {
+  check_target(replace);
+  make_target();
   try {
-    write_new(staged, content);
-    move_file(staged, file);
+    make_staging();
   } catch (const RunError&) {
-    std::error_code ignored;
-    fs::remove(staged, ignored);
+    remove_made();
     throw;
   }
 }
 
-RunDirectory::RunDirectory(fs::path target, bool replace) : target_{std::move(target)} {
-  check_target(replace);
-  staging_ = target_ / fmt::format(".partial-{}", ::getpid());
-  make_target();
-}
-
-void RunDirectory::check_target(bool replace) const {
+void RunDirectory::check_target(bool replace) {
   std::error_code error;
   const fs::file_status status = fs::status(target_, error);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status))
-    throw UsageError{fmt::format("{}: is a file; --out names a directory", target_.string())};
+    throw UsageError{fmt::format("{}: is a file; --out names a directory", shown_.string())};
   const bool empty = fs::is_empty(target_, error);
-  if (error) fail(target_, "read", error.value());
-  if (empty || only_live_files(target_)) return;
+  if (error) fail_io(shown_, "read", error.value());
+  if (empty || only_remains(target_)) return;
   if (!replace)
     throw UsageError{fmt::format("{}: holds something already; --force replaces an earlier run",
-                                 target_.string())};
+                                 shown_.string())};
   if (!fs::exists(target_ / kMarker))
     throw UsageError{fmt::format("{}: is not a run directory (no {} in it) and is not replaced",
-                                 target_.string(), kMarker)};
+                                 shown_.string(), kMarker)};
+  replaces_ = true;
 }
 
 void RunDirectory::make_target() {
   std::vector<fs::path> missing;
   std::error_code error;
-  for (fs::path folder = staging_; !folder.empty() && !fs::exists(folder, error);
+  for (fs::path folder = target_; !folder.empty() && !fs::exists(folder, error);
        folder = folder.parent_path())
     missing.push_back(folder);
   std::reverse(missing.begin(), missing.end());
   for (const fs::path& folder : missing) {
     if (!fs::create_directory(folder, error) && error) {
       remove_made();
-      fail(folder.filename() == staging_.filename() ? target_ : folder, "write into it",
-           error.value());
+      fail_io(folder == target_ ? shown_ : folder, "write into it", error.value());
     }
     made_.insert(made_.begin(), folder);
   }
+}
+
+/// Beside the target, for one exchange of names; inside it where no name leads from there to it.
+void RunDirectory::make_staging() {
+  const fs::path parent = target_.parent_path();
+  const std::string stem = fmt::format(".{}{}", target_.filename().string(), kPartial);
+  remove_stale(target_, std::string{kPartial});
+  remove_stale(parent, stem);
+  std::error_code error;
+  beside_ = same_mount(parent, target_) && ::access(parent.c_str(), W_OK | X_OK) == 0 &&
+            !fs::equivalent(target_, fs::current_path(error), error);
+  if (replaces_ && !beside_)
+    throw UsageError{fmt::format(
+        "{}: cannot be replaced in one step: it is a mount point, the working directory, or in a "
+        "directory that cannot be written; expected another --out, or the earlier run removed",
+        shown_.string())};
+  staging_ = beside_ ? make_partial(parent, stem, lock_)
+                     : make_partial(target_, std::string{kPartial}, lock_);
 }
 
 void RunDirectory::remove_made() noexcept {
@@ -157,32 +131,91 @@ void RunDirectory::remove_made() noexcept {
 RunDirectory::~RunDirectory() {
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
-  if (committed_) return;
-  remove_made();
+  if (!committed_) remove_made();
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) {
-  write_new(staging_ / name, content);
+  write_new(lock_.get(), name, content, shown_);
   names_.push_back(name);
 }
 
 void RunDirectory::commit() {
-  std::error_code error;
-  fs::remove(target_ / kMarker, error);
-  if (error) fail(target_ / kMarker, "replace", error.value());
-  for (const std::string_view stale : kRunFiles) fs::remove(target_ / stale, error);
-  std::stable_partition(names_.begin(), names_.end(),
-                        [](const std::string& name) { return name != kMarker; });
-  for (const std::string& name : names_) move_file(staging_ / name, target_ / name);
-  sync_directory(target_);
+  if (beside_) {
+    change_names();
+  } else {
+    move_files();
+  }
+  sync_directory(target_.parent_path());
   committed_ = true;
 }
 
+/// One exchange. What lies in the target and is no file of a run, the black box above all, is in
+/// both directories before it; where a file system has no links, it follows after.
+void RunDirectory::change_names() {
+  std::vector<fs::path> kept;
+  for (const fs::directory_entry& entry : fs::directory_iterator{target_})
+    if (!is_run_file(entry.path().filename().string())) kept.push_back(entry.path().filename());
+  std::error_code ignored;
+  for (const fs::path& name : kept) static_cast<void>(link_tree(target_ / name, staging_ / name));
+  fs::permissions(staging_, fs::status(target_, ignored).permissions(), ignored);
+  sync_directory(staging_);
+  exchange(target_, staging_);
+  for (const fs::path& name : kept)
+    if (!fs::exists(fs::symlink_status(target_ / name, ignored)))
+      rename_file(staging_ / name, target_ / name);
+}
+
+void RunDirectory::move_files() {
+  std::error_code ignored;
+  for (const std::string_view name : kRunFiles) fs::remove(target_ / name, ignored);
+  std::stable_partition(names_.begin(), names_.end(),
+                        [](const std::string& name) { return name != kMarker; });
+  for (const std::string& name : names_) rename_file(staging_ / name, target_ / name);
+  sync_directory(target_);
+}
+
+namespace {
+
+/// N of STEM.run.N, 1 of STEM.run, else 0.
+std::uint64_t run_number(const std::string& name, const std::string& stem) {
+  if (!name.starts_with(stem)) return 0;
+  if (name.size() == stem.size()) return 1;
+  std::uint64_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [at, error] = std::from_chars(name.data() + stem.size() + 1, end, number);
+  return name[stem.size()] == '.' && error == std::errc{} && at == end ? number : 0;
+}
+
+/// By their numbers.
+std::map<std::uint64_t, fs::path> runs_named(const fs::path& folder, const std::string& stem) {
+  std::map<std::uint64_t, fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator at{folder, error}; !error && at != fs::directory_iterator{};
+       at.increment(error))
+    if (const auto number = run_number(at->path().filename().string(), stem); number > 0)
+      found.emplace(number, at->path());
+  return found;
+}
+
+}  // namespace
+
 fs::path free_run_name(const fs::path& folder, const std::string& stem) {
-  fs::path name = folder / (stem + ".run");
-  for (int number = 2; fs::exists(name); ++number)
-    name = folder / fmt::format("{}.run.{}", stem, number);
-  return name;
+  const auto runs = runs_named(folder, stem + ".run");
+  if (runs.empty()) return folder / (stem + ".run");
+  return folder / fmt::format("{}.run.{}", stem, runs.rbegin()->first + 1);
+}
+
+std::vector<fs::path> remove_old_runs(const fs::path& folder, const std::string& stem,
+                                      std::size_t keep) {
+  auto runs = runs_named(folder, stem + ".run");
+  std::vector<fs::path> removed;
+  for (auto run = runs.begin(); runs.size() > keep && run != runs.end(); run = runs.erase(run)) {
+    std::error_code error;
+    const bool ours = fs::is_directory(fs::symlink_status(run->second, error)) &&
+                      (fs::exists(run->second / kMarker) || only_remains(run->second));
+    if (ours && fs::remove_all(run->second, error) > 0 && !error) removed.push_back(run->second);
+  }
+  return removed;
 }
 
 namespace {

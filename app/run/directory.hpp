@@ -6,51 +6,58 @@
 #include <vector>
 
 #include "app/config/config.hpp"
+#include "app/run/disk.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {
 
-/// Writes a file so that a reader sees the old content or the whole new content, and so that the
-/// new one survives a power cut. Throws RunError naming the file and the reason; leaves no partial
-/// file.
-void write_file(const std::filesystem::path& file, std::string_view content);
-
 /// Where a run writes its results. Files are staged out of sight and appear together at commit(),
-/// `run.toml` last: a directory without it is not a run. When the object goes away uncommitted,
-/// everything that it made goes too.
+/// in one exchange of names: whatever interrupts it, there is the earlier run or the new one,
+/// whole. A directory without `run.toml` is not a run. When the object goes away uncommitted,
+/// everything that it made goes too; what a kill left of another is removed.
 class RunDirectory {
  public:
   /// Makes the directory where it is missing, so that a place that cannot be written fails before
   /// the work. Throws UsageError when it holds something and `replace` is not set, or when it holds
-  /// something that is not a run; RunError when it cannot be made.
+  /// something that is not a run, or cannot be replaced in one step; IoError when it cannot be
+  /// made.
   RunDirectory(std::filesystem::path target, bool replace);
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
   ~RunDirectory();
 
-  /// Stages one file. Throws RunError when the disk is full or the file cannot be written.
+  /// Stages one file. Throws IoError when the disk is full or the file cannot be written.
   void write(const std::string& name, std::string_view content);
-  /// Where a staged file lies until commit().
-  [[nodiscard]] std::filesystem::path staging() const { return staging_; }
   void commit();
 
  private:
+  void check_target(bool replace);
   void make_target();
-  void check_target(bool replace) const;
+  void make_staging();
+  void change_names();
+  void move_files();
   void remove_made() noexcept;
 
-  std::filesystem::path target_;
+  std::filesystem::path shown_;   ///< as it was given
+  std::filesystem::path target_;  ///< absolute, no link
   std::filesystem::path staging_;
+  Descriptor lock_;       ///< of `staging_`
+  bool replaces_{false};  ///< an earlier run
+  bool beside_{false};    ///< `staging_` lies beside `target_`, not in it
   std::vector<std::filesystem::path>
       made_;  ///< directories that did not exist before, innermost first
   std::vector<std::string> names_;
   bool committed_{false};
 };
 
-/// The first of STEM.run, STEM.run.2, STEM.run.3... in `folder` that does not exist.
+/// STEM.run, or STEM.run.N behind the highest number that exists in `folder`.
 [[nodiscard]] std::filesystem::path free_run_name(const std::filesystem::path& folder,
                                                   const std::string& stem);
+
+/// Removes the oldest runs of such names beyond `keep`, and nothing that is no run; gives which.
+std::vector<std::filesystem::path> remove_old_runs(const std::filesystem::path& folder,
+                                                   const std::string& stem, std::size_t keep);
 
 /// What a run directory is made of beside report.html.
 struct RunFiles {

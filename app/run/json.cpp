@@ -186,6 +186,7 @@ void list_members(Archive&& a, Of<LiveFigures> auto& f) {
   a("recording", f.recording);
   a("recorded_bytes", f.recorded_bytes);
   a("records_lost", f.records_lost);
+  if (a.has("publish_failures", true)) a("publish_failures", f.publish_failures);
 }
 
 template <class Archive>

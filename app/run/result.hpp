@@ -228,6 +228,7 @@ struct LiveFigures {
   bool recording{false};
   std::uint64_t recorded_bytes{0};
   std::uint64_t records_lost{0};
+  std::uint64_t publish_failures{0};  ///< how often live.json could not be written
 };
 
 /// A bin of the histogram of lateness, with how many frames were so late.

@@ -7,9 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <stdexcept>
 #include <tuple>
+#include <type_traits>
 
 #include "app/error.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 namespace {
@@ -38,8 +42,18 @@ double number(std::string_view cell) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc{} || end != cell.data() + cell.size())
-    throw RunError{fmt::format("\"{}\" is no number", cell)};
+    throw RunError{fmt::format("{} is no number", drivers::quote(cell))};
   return value;
+}
+
+/// A number that the integer type can hold; what is behind its point goes.
+template <class Integer>
+Integer integer(std::string_view cell) {
+  constexpr double kBeyond = 2.0 * static_cast<double>(std::numeric_limits<Integer>::max() / 2 + 1);
+  const double value = number(cell);
+  if (!(value >= static_cast<double>(std::numeric_limits<Integer>::min()) && value < kBeyond))
+    throw RunError{fmt::format("{} is out of range", drivers::quote(cell))};
+  return static_cast<Integer>(value);
 }
 
 /// Calls `row` with the cells of each line after the header; returns the header's cells. Throws
@@ -53,6 +67,8 @@ std::vector<std::string> read_rows(std::string_view text, const std::string& ori
       if (cells.size() != header.size())
         throw RunError{fmt::format("{} cells, expected {}", cells.size(), header.size())};
       row(cells);
+    } catch (const std::out_of_range&) {
+      throw RunError{fmt::format("{}:{}: {} cells, expected more", origin, line, cells.size())};
     } catch (const RunError& error) {
       throw RunError{fmt::format("{}:{}: {}", origin, line, error.what())};
     }
@@ -114,6 +130,8 @@ template <class T>
 void read_cell(std::string_view cell, T& value) {
   if constexpr (std::is_same_v<T, std::string>)
     value = cell;
+  else if constexpr (std::is_integral_v<T>)
+    value = integer<T>(cell);
   else
     value = static_cast<T>(number(cell));
 }
@@ -177,8 +195,8 @@ std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodS
 
 void read_curve(std::string_view text, const std::string& origin, RunResult& result) {
   read_rows(text, origin, [&](const Cells& c) {
-    result.curve.push_back({number(c.at(0)), number(c.at(1)), number(c.at(2)),
-                            static_cast<std::uint64_t>(number(c.at(3)))});
+    result.curve.push_back(
+        {number(c.at(0)), number(c.at(1)), number(c.at(2)), integer<std::uint64_t>(c.at(3))});
     const std::size_t expected = 4 + 2 * result.methods.size();
     if (c.size() < expected)
       throw RunError{
@@ -257,7 +275,7 @@ std::vector<PredictedRow> read_prediction(std::string_view text, const std::stri
   std::vector<PredictedRow> out;
   read_rows(text, origin, [&](const Cells& c) {
     PredictedRow row;
-    row.record = static_cast<std::uint32_t>(number(c.at(0)));
+    row.record = integer<std::uint32_t>(c.at(0));
     row.time_s = number(c.at(1));
     row.measured_n = number(c.at(2));
     row.predicted_n = number(c.at(3));

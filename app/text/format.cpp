@@ -10,6 +10,8 @@
 #include <numeric>
 #include <vector>
 
+#include "drivers/text/quote.hpp"
+
 namespace dampline::app {
 namespace {
 
@@ -79,7 +81,9 @@ std::string toml_string(std::string_view text) {
   return out + '"';
 }
 
-void warn(std::string_view text) { fmt::print(stderr, "dampline: warning: {}\n", text); }
+void warn(std::string_view text) {
+  fmt::print(stderr, "dampline: warning: {}\n", drivers::printable(text));
+}
 
 std::size_t edit_distance(std::string_view left, std::string_view right) {
   std::vector<std::size_t> row(right.size() + 1);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/verbs/verbs.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 
@@ -21,7 +22,7 @@ void add_config_verb(CLI::App& program, std::function<int()>& action) {
   check->callback([file, &action] {
     action = [file] {
       static_cast<void>(load_config(*file));
-      fmt::print("{}: right\n", *file);
+      fmt::print("{}: right\n", drivers::printable(*file));
       return 0;
     };
   });

@@ -16,6 +16,7 @@
 #include "app/verbs/verbs.hpp"
 #include "drivers/blackbox/source.hpp"
 #include "drivers/candump/line.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 namespace {
@@ -27,6 +28,7 @@ struct ExportOptions {
   std::string blackbox;
   std::string out{"-"};
   std::string events;
+  bool force{false};
   bool quiet{false};
 };
 
@@ -63,10 +65,10 @@ void write_events(drivers::BlackboxSource& source, std::optional<TextFile>& file
 }
 
 void write_all(drivers::BlackboxSource& source, const ExportOptions& options) {
-  TextFile log{options.out};
+  TextFile log{options.out, options.force};
   std::optional<TextFile> events;
   if (!options.events.empty()) {
-    events.emplace(options.events);
+    events.emplace(options.events, options.force);
     events->buffer().append(std::string_view{"time_s,event,line,value\n"});
   }
   const std::size_t width = name_width(source.interfaces());
@@ -109,7 +111,7 @@ void print_summary(const drivers::BlackboxFindings& found, const ExportOptions& 
                    "times were moved to that end\n",
                    found.runs_moved);
   }
-  fmt::print(stderr, "{}", text);
+  fmt::print(stderr, "{}", drivers::printable(text, true));
 }
 
 int export_blackbox(const ExportOptions& options) {
@@ -131,6 +133,7 @@ void add_export_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--out", options->out, "candump log; - is standard output")
       ->capture_default_str();
   verb->add_option("--events", options->events, "table of the events: time_s,event,line,value");
+  verb->add_flag("--force", options->force, "replace files that exist");
   verb->add_flag("--quiet", options->quiet, "no summary on standard error");
   verb->callback([options, &action] { action = [options] { return export_blackbox(*options); }; });
 }

@@ -5,10 +5,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "app/config/config.hpp"
@@ -25,8 +31,10 @@
 #include "app/run/directory.hpp"
 #include "app/run/json.hpp"
 #include "app/run/provenance.hpp"
+#include "app/text/format.hpp"
 #include "app/text/summary.hpp"
 #include "app/verbs/verbs.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 namespace {
@@ -48,7 +56,7 @@ struct RunFlags {
   }
   /// What the last line on the terminal names.
   [[nodiscard]] std::string outcome(const std::filesystem::path& place) const {
-    return (no_report ? place : place / "report.html").string();
+    return drivers::printable((no_report ? place : place / "report.html").string());
   }
   [[nodiscard]] bool show_progress() const { return !quiet && ::isatty(STDERR_FILENO) == 1; }
   [[nodiscard]] Config load() const { return config.empty() ? Config{} : load_config(config); }
@@ -116,8 +124,8 @@ int explain(const ExplainFlags& options) {
   if (options.json) {
     fmt::print("{}", found.json);
   } else if (!options.quiet) {
-    fmt::print("{}{}: {}\n", found.summary, options.no_report ? "results" : "report",
-               options.outcome(place));
+    fmt::print("{}{}: {}\n", drivers::printable(found.summary, true),
+               options.no_report ? "results" : "report", options.outcome(place));
   }
   return 0;
 }
@@ -166,8 +174,8 @@ void print_result(const IdentifyFlags& options, const RunResult& result,
                   const std::filesystem::path& place) {
   if (options.json) fmt::print("{}", to_json(result));
   if (options.json || options.quiet) return;
-  fmt::print("{}  {:<20} {}\n", summarize(result), options.no_report ? "results" : "report",
-             options.outcome(place));
+  fmt::print("{}  {:<20} {}\n", drivers::printable(summarize(result), true),
+             options.no_report ? "results" : "report", options.outcome(place));
 }
 
 void check_live_flags(const IdentifyFlags& options, SourceKind kind) {
@@ -202,19 +210,87 @@ Config config_of(const IdentifyFlags& options) {
   return config;
 }
 
+/// Where a run is put whose own place cannot be written; the service manager's comes first.
+std::vector<std::filesystem::path> refuges() {
+  std::vector<std::filesystem::path> out;
+  if (const char* runtime = std::getenv("RUNTIME_DIRECTORY"); runtime != nullptr)
+    out.emplace_back(runtime);
+  std::error_code error;
+  if (auto temporary = std::filesystem::temp_directory_path(error); !error)
+    out.push_back(std::move(temporary));
+  out.emplace_back("/dev/shm");
+  return out;
+}
+
+[[noreturn]] void take_refuge(const IdentifyFlags& options, const RunFiles& files,
+                              const std::filesystem::path& place, const IoError& reason) {
+  for (const std::filesystem::path& refuge : refuges()) {
+    const std::string stem = "dampline-" + place.stem().string();
+    const std::filesystem::path other = free_run_name(refuge, stem);
+    try {
+      RunDirectory directory{other, false};
+      options.write(files, directory);
+    } catch (const RunError&) {
+      continue;
+    } catch (const UsageError&) {
+      continue;
+    }
+    throw RunError{fmt::format("{}; the run was put into {}", reason.what(), other.string())};
+  }
+  throw RunError{fmt::format("{}; no other place took the run, which is lost", reason.what())};
+}
+
+/// The result of a live run cannot be had again: it waits for space, then it goes elsewhere.
+void write_patiently(const IdentifyFlags& options, const RunFiles& files,
+                     std::optional<RunDirectory>& directory, const std::filesystem::path& place) {
+  constexpr int kAttempts = 30;
+  constexpr std::chrono::seconds kPause{1};
+  for (int attempt = 1;; ++attempt) {
+    try {
+      if (!directory) directory.emplace(place, options.force);
+      return options.write(files, *directory);
+    } catch (const IoError& error) {
+      directory.reset();
+      if (attempt == 1)
+        warn(fmt::format("{}; this is tried again for {} s", error.what(), kAttempts));
+      if (attempt == kAttempts) take_refuge(options, files, place, error);
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+void write_result(const IdentifyFlags& options, const RunFiles& files,
+                  std::optional<RunDirectory>& directory, const std::filesystem::path& place,
+                  SourceKind kind) {
+  if (kind != SourceKind::kInterface) return options.write(files, *directory);
+  write_patiently(options, files, directory, place);
+}
+
+/// A service makes a run at each start.
+void remove_runs_before(const IdentifyFlags& options, const Config& config,
+                        const std::filesystem::path& place) {
+  if (!options.out.empty() || config.live.keep_runs == 0) return;
+  const auto removed =
+      remove_old_runs(place.parent_path(), std::filesystem::path{options.source.path}.stem(),
+                      static_cast<std::size_t>(config.live.keep_runs));
+  for (const std::filesystem::path& run : removed)
+    if (!options.quiet) warn(fmt::format("{}: an old run, removed", run.string()));
+}
+
 int identify(const IdentifyFlags& options) {
   const RecognisedColumns seen = recognise_columns(config_of(options), options.source);
   const SourceKind kind = detect_source(seen.config, options.source);
   const Config config = with_record_rate(seen.config, options.source, kind);
   check_live_flags(options, kind);
   const std::filesystem::path place = options.place(options.source.path);
-  RunDirectory directory{place,
-                         options.force};  // first: a place that cannot be written costs no work
+  std::optional<RunDirectory> directory;
+  directory.emplace(place, options.force);  // first: a place that cannot be written costs no work
+  if (kind == SourceKind::kInterface) remove_runs_before(options, config, place);
   Identified found = find(options, config, kind, place);
   found.result.notes.insert(found.result.notes.begin(), seen.notes.begin(), seen.notes.end());
   const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
                        std::move(found.state)};
-  options.write(files, directory);
+  write_result(options, files, directory, place, kind);
   print_result(options, files.result, place);
   return 0;
 }

@@ -12,11 +12,12 @@
 namespace dampline::app {
 
 /// A text file that is written front to back through a large buffer; "-" is the standard output.
-/// A file that was not closed is removed again.
+/// A file appears whole, when it is closed.
 class TextFile {
  public:
-  /// Throws RunError naming the file and the reason.
-  explicit TextFile(std::string path);
+  /// Throws UsageError where the file exists and is not to be replaced, RunError naming the file and
+  /// the reason.
+  TextFile(std::string path, bool replace);
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
   ~TextFile();
@@ -35,6 +36,8 @@ class TextFile {
   [[noreturn]] void fail(const char* action) const;
   [[nodiscard]] bool is_stdout() const noexcept { return path_ == "-"; }
   std::string path_;
+  std::string staged_;  ///< empty: written where it is
+  bool replace_;
   int file_{-1};
   fmt::memory_buffer buffer_;
 };
@@ -43,7 +46,7 @@ class TextFile {
 class TruthFile {
  public:
   /// An empty path: none. Throws RunError.
-  TruthFile(const std::string& path, const sim::SimulationConfig& config);
+  TruthFile(const std::string& path, const sim::SimulationConfig& config, bool replace);
   void append(const sim::SimulatedSample& sample);
   void close();
 

@@ -9,8 +9,9 @@
 
 #include "app/report/page.hpp"
 #include "app/run/directory.hpp"
-#include "app/text/format.hpp"
+#include "app/run/disk.hpp"
 #include "app/verbs/verbs.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 namespace {
@@ -18,10 +19,8 @@ namespace {
 int rebuild_report(const std::filesystem::path& run) {
   const RunFiles files = read_files(run);
   const Provenance provenance = read_provenance(files.run_toml, (run / "run.toml").string());
-  const Page page = make_page(files.result, provenance, files.run_toml);
-  write_file(run / "report.html", page.html);
-  if (!page.warning.empty()) warn(page.warning);
-  fmt::print("{}\n", (run / "report.html").string());
+  write_file(run / "report.html", make_page(files.result, provenance, files.run_toml));
+  fmt::print("{}\n", drivers::printable((run / "report.html").string()));
   return 0;
 }
 

@@ -34,8 +34,8 @@ bool own_ranges(const SimulatedRun& run) {
   return run.simulation.sensors.range_mps2 == sim::SensorConfig{}.range_mps2;
 }
 
-void write_text(const std::string& path, std::string_view text) {
-  TextFile file{path};
+void write_text(const std::string& path, std::string_view text, bool replace) {
+  TextFile file{path, replace};
   file.buffer().append(text.data(), text.data() + text.size());
   file.close();
 }
@@ -65,7 +65,8 @@ void write_side_files(const SimulateOptions& options, const SimulatedRun& run) {
   namespace fs = std::filesystem;
   if (!options.dbc.empty()) {
     write_text(options.dbc,
-               sim::dbc_text(run.simulation.sensors, run.nodes, run.simulation.extra_sensors));
+               sim::dbc_text(run.simulation.sensors, run.nodes, run.simulation.extra_sensors),
+               options.force);
   }
   if (options.config.empty()) return;
   std::string dbc;
@@ -73,12 +74,12 @@ void write_side_files(const SimulateOptions& options, const SimulatedRun& run) {
     const fs::path folder = fs::absolute(options.config).parent_path();
     dbc = fs::absolute(options.dbc).lexically_proximate(folder).generic_string();
   }
-  write_text(options.config, identify_config_text(run, dbc));
+  write_text(options.config, identify_config_text(run, dbc), options.force);
 }
 
 std::uint64_t write_record(const SimulateOptions& options, const SimulatedRun& run, bool csv) {
-  TextFile record{options.out};
-  TruthFile truth{options.truth, run.simulation};
+  TextFile record{options.out, options.force};
+  TruthFile truth{options.truth, run.simulation, options.force};
   const bool extras = run.simulation.extra_sensors;
   if (csv) record.buffer().append(extras ? sim::kExtrasHeader : sim::kSampleHeader);
   sim::Simulation simulation{run.simulation};
@@ -201,6 +202,7 @@ void add_file_flags(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--truth", options.truth, "also write states and forces, as CSV");
   verb.add_option("--dbc", options.dbc, "also write the DBC file of the sensors");
   verb.add_option("--config-out", options.config, "also write a configuration for identify");
+  verb.add_flag("--force", options.force, "replace files that exist");
   verb.add_flag("--quiet", options.quiet, "no summary on the standard error");
 }
 

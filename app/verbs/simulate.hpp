@@ -38,6 +38,7 @@ struct SimulateOptions {
   double speed{1.0};
   bool asap{false};             ///< as fast as possible
   std::int64_t batch_ticks{1};  ///< sample instants that are sent together
+  bool force{false};            ///< replaces files that exist
   bool quiet{false};
 };
 

@@ -31,7 +31,7 @@ class Batches {
       : simulation_{run.simulation},
         nodes_{run.nodes, run.simulation.seed},
         transport_{run.transport, run.simulation.seed},
-        truth_{options.truth, run.simulation},
+        truth_{options.truth, run.simulation, options.force},
         most_{options.batch_ticks},
         left_{run.samples},
         extras_{run.simulation.extra_sensors} {

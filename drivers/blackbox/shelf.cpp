@@ -150,12 +150,17 @@ std::uint64_t BlackboxShelf::trim(int directory, const Retention& retention,
                                   std::int64_t now_ns) noexcept {
   std::uint64_t removed = 0;
   while (oldest_is_due(retention, current_bytes, current_created_ns, now_ns)) {
-    const std::string name = blackbox_file_name(files_.front().number);
-    if (::unlinkat(directory, name.c_str(), 0) == 0) ++removed;
-    bytes_ -= files_.front().bytes;
-    files_.erase(files_.begin());
+    if (remove_oldest(directory)) ++removed;
   }
   return removed;
+}
+
+bool BlackboxShelf::remove_oldest(int directory) noexcept {
+  if (files_.empty()) return false;
+  const std::string name = blackbox_file_name(files_.front().number);
+  bytes_ -= files_.front().bytes;
+  files_.erase(files_.begin());
+  return ::unlinkat(directory, name.c_str(), 0) == 0;
 }
 
 }  // namespace dampline::drivers

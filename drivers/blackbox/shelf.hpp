@@ -53,6 +53,8 @@ class BlackboxShelf {
   /// many went.
   std::uint64_t trim(int directory, const Retention& retention, std::uint64_t current_bytes,
                      std::int64_t current_created_ns, std::int64_t now_ns) noexcept;
+  /// False: there is no complete file, or it stays.
+  bool remove_oldest(int directory) noexcept;
 
  private:
   struct Kept {

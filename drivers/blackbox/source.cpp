@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -223,13 +224,25 @@ BlackboxSource::Step BlackboxSource::take_frame(CanFrame& frame) noexcept {
   return Step::kFrame;
 }
 
+namespace {
+
+/// Times of a damaged or hostile file stop at the ends of the clock.
+std::int64_t sum_of(std::int64_t a, std::int64_t b) noexcept {
+  std::int64_t sum = 0;
+  if (!__builtin_add_overflow(a, b, &sum)) return sum;
+  return b > 0 ? std::numeric_limits<std::int64_t>::max()
+               : std::numeric_limits<std::int64_t>::min();
+}
+
+}  // namespace
+
 /// Where a run begins earlier than the one before had ended, all of it is moved.
 void BlackboxSource::place(std::int64_t& time_ns) noexcept {
   if (!std::exchange(placed_, true) && any_time_ && time_ns < newest_ns_) {
-    moved_ns_ = newest_ns_ - time_ns;
+    if (__builtin_sub_overflow(newest_ns_, time_ns, &moved_ns_)) moved_ns_ = newest_ns_;
     ++findings_.runs_moved;
   }
-  time_ns += moved_ns_;
+  time_ns = sum_of(time_ns, moved_ns_);
   newest_ns_ = any_time_ ? std::max(newest_ns_, time_ns) : time_ns;
   any_time_ = true;
 }

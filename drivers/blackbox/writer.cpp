@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -115,6 +116,7 @@ void BlackboxWriter::do_tick(std::int64_t monotonic_ns) noexcept {
   flush();
   if (output_.is_open() && now_ns_ - synced_ns_ >= config_.sync_interval_ns) {
     synced_ns_ = now_ns_;
+    if (directory_gone()) return fail(ENOENT, true);
     if (output_.dirty()) sync();
     remove_old_files();
     keep_reserve();
@@ -197,6 +199,7 @@ bool BlackboxWriter::resume() noexcept {
   const std::uint64_t lost = lost_since_stop_;
   const int error = stopped_errno_;
   retry_at_ns_ = now_ns_ + config_.retry_ns;
+  if (directory_gone() && !make_directory_again()) return false;
   if (!has_space(kWorthResuming)) return false;
   health_.recording = true;
   if (!begin_file()) {  // stops again; the outage is still the same one
@@ -221,6 +224,10 @@ void BlackboxWriter::remove_old_files() noexcept {
 /// Stops before the file system is full, if asked to.
 void BlackboxWriter::keep_reserve() noexcept {
   if (!output_.is_open() || has_space(0)) return;
+  if (config_.keep_bytes > 0 && shelf_.remove_oldest(handles_.directory)) {
+    ++health_.files_removed;
+    return;  // the next turn looks again
+  }
   finish_file();
   if (health_.recording && !output_.is_open()) stop(ENOSPC, 0);
 }
@@ -229,6 +236,19 @@ bool BlackboxWriter::has_space(std::uint64_t beyond_reserve) const noexcept {
   struct statvfs space {};
   if (::fstatvfs(handles_.directory, &space) != 0) return true;
   return space.f_bavail * space.f_frsize >= config_.reserve_free_bytes + beyond_reserve;
+}
+
+bool BlackboxWriter::directory_gone() const noexcept {
+  struct stat status {};
+  return ::fstat(handles_.directory, &status) == 0 && status.st_nlink == 0;
+}
+
+bool BlackboxWriter::make_directory_again() noexcept {
+  auto handles = take_directory(config_.directory);
+  if (!handles.ok()) return false;
+  handles_ = std::move(handles.value());
+  shelf_ = {};
+  return true;
 }
 
 namespace {
@@ -291,7 +311,8 @@ int lock_file(int directory, std::string& failed) {
   }
   const std::string pid = fmt::format("{}", ::getpid());
   // For the message above only.
-  if (::ftruncate(lock, 0) == 0) static_cast<void>(::pwrite(lock, pid.data(), pid.size(), 0));
+  [[maybe_unused]] const bool told =
+      ::ftruncate(lock, 0) == 0 && ::pwrite(lock, pid.data(), pid.size(), 0) > 0;
   return lock;
 }
 
@@ -307,6 +328,12 @@ void sync_parent(const std::filesystem::path& directory) {
 
 BlackboxWriter::Handles::Handles(Handles&& other) noexcept
     : directory{std::exchange(other.directory, -1)}, lock{std::exchange(other.lock, -1)} {}
+
+BlackboxWriter::Handles& BlackboxWriter::Handles::operator=(Handles&& other) noexcept {
+  std::swap(directory, other.directory);
+  std::swap(lock, other.lock);
+  return *this;
+}
 
 BlackboxWriter::Handles::~Handles() {
   if (lock >= 0) ::close(lock);

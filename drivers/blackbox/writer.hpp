@@ -22,8 +22,9 @@ struct BlackboxConfig {
   std::uint64_t keep_bytes{0};                           ///< of all files; 0: for ever
   std::int64_t keep_ns{0};                               ///< age of a file; 0: for ever
   std::int64_t sync_interval_ns{1'000'000'000};          ///< at most so much is lost
-  std::uint64_t reserve_free_bytes{0};                   ///< left free on the file system
-  std::int64_t retry_ns{5'000'000'000};                  ///< between attempts to go on
+  /// Left free on the file system: the oldest files go where keep_bytes lets them, then it stops.
+  std::uint64_t reserve_free_bytes{0};
+  std::int64_t retry_ns{5'000'000'000};  ///< between attempts to go on
 };
 
 /// Frames and events into files of a directory (firmware_core/docs/blackbox_format.md).
@@ -35,8 +36,8 @@ struct BlackboxConfig {
 /// stops and is tried again every `retry_ns`. When it goes on, the new file begins with
 /// kRecordingStopped and kRecordingResumed, whose value is the number of records that were lost;
 /// those of a failed sync count among them, though they may be readable. A file that follows a
-/// complete one begins with kFileRotated.
-/// One writer a directory: a lock file sees to it. Not for two threads at once.
+/// complete one begins with kFileRotated. A directory that is removed under the writer is made
+/// again. One writer a directory: a lock file sees to it. Not for two threads at once.
 class BlackboxWriter final : public hal::RecordSink {
  public:
   static Outcome<std::unique_ptr<BlackboxWriter>> open(const BlackboxConfig& config);
@@ -54,7 +55,7 @@ class BlackboxWriter final : public hal::RecordSink {
     int lock{-1};
     Handles() = default;
     Handles(Handles&& other) noexcept;
-    Handles& operator=(Handles&&) = delete;
+    Handles& operator=(Handles&& other) noexcept;
     Handles(const Handles&) = delete;
     Handles& operator=(const Handles&) = delete;
     ~Handles();
@@ -87,6 +88,8 @@ class BlackboxWriter final : public hal::RecordSink {
   void remove_old_files() noexcept;
   void keep_reserve() noexcept;
   [[nodiscard]] bool has_space(std::uint64_t beyond_reserve) const noexcept;
+  [[nodiscard]] bool directory_gone() const noexcept;
+  [[nodiscard]] bool make_directory_again() noexcept;
 
   BlackboxConfig config_;
   Handles handles_;

@@ -112,20 +112,25 @@ CandumpFault CandumpSource::check_time(std::string_view line, CanFrame& frame) n
   return {};
 }
 
+// Of the next lines most are a second or more before this one: it and its like are wrong, not they.
 bool CandumpSource::next_goes_back(std::int64_t time_ns) noexcept {
+  constexpr int kLines = 64;
   std::string_view text = reader_.peek();
-  for (int lines = 0; lines < 8; ++lines) {
+  int back = 0;
+  int good = 0;
+  for (int lines = 0; lines < kLines; ++lines) {
     const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos) return false;
+    if (end == std::string_view::npos) break;
     CanFrame next;
     CandumpLine parser;
     std::string_view line = text.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
-    const bool good = parser.parse(line, next).expected == nullptr;
-    if (good) return next.time_ns <= time_ns - hal::kSecondNs;
     text.remove_prefix(end + 1);
+    if (parser.parse(line, next).expected != nullptr) continue;
+    ++good;
+    if (next.time_ns <= time_ns - hal::kSecondNs) ++back;
   }
-  return false;
+  return 2 * back > good;
 }
 
 void CandumpSource::remember_first(std::string_view line) noexcept {

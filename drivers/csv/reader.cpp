@@ -236,15 +236,28 @@ CsvReader::Step CsvReader::take_line(std::string_view line, std::span<double> ro
   if (time_place_ != kUnused) {
     const double time = row[time_place_];
     const bool first = health_.rows == 0;
-    if (!(first ? time == time : time > newest_time_)) {
+    if (!(first ? std::isfinite(time) : time > newest_time_ && time - first_time_ < kMostS)) {
       const std::string expected = first ? "a time" : fmt::format("a time after {}", newest_time_);
       return bad_line(1, fmt::format("{} = {}", time_column_, time), expected);
     }
+    if (!first && skip_bad_lines_ && !is_near(time))
+      return bad_line(1, fmt::format("{} = {}", time_column_, time), "no time that is far ahead");
+    if (first) first_time_ = time;
     newest_time_ = time;
   }
   ++health_.rows;
   health_.line = reader_.line_number();
   return Step::kRow;
+}
+
+/// Few rows that are far ahead are wrong, or all that follow would be; many are a pause.
+bool CsvReader::is_near(double time) noexcept {
+  const bool goes_on = time > far_time_ && time - far_time_ < kFarS;
+  far_rows_ = time - newest_time_ < kFarS ? 0 : goes_on ? far_rows_ + 1 : 1;
+  far_time_ = time;
+  const bool near = far_rows_ == 0 || far_rows_ > kFarRows;
+  if (near) far_rows_ = 0;
+  return near;
 }
 
 CsvReader::Step CsvReader::bad_line(std::size_t column, std::string found,

@@ -30,8 +30,9 @@ struct CsvConfig {
 /// header are the header, words in every cell of the line after it are units; \r\n, quoted cells
 /// and a UTF-8 byte order mark are borne; columns not asked for are listed by ignored_columns() and
 /// not parsed. A short or long row, a cell that is no number, and a time that does not increase are
-/// errors with file, line and column, or counted with skip_bad_lines. A last line without its end
-/// may be incomplete: it is dropped and sets truncated.
+/// errors with file, line and column, or counted with skip_bad_lines, and with it also up to 16
+/// rows in a row that are a minute or more ahead. A last line without its end may be incomplete: it
+/// is dropped and sets truncated.
 class CsvReader final : public hal::RowSource {
  public:
   /// Reads up to the header. Errors: no such file, empty, no header, binary data, a candump log, a
@@ -66,6 +67,7 @@ class CsvReader final : public hal::RowSource {
   [[nodiscard]] static bool is_comment(std::string_view line) noexcept;
   bool take_units(std::string_view line) noexcept;
   Step take_line(std::string_view line, std::span<double> row) noexcept;
+  [[nodiscard]] bool is_near(double time) noexcept;
   Step end_of_file() noexcept;
   Step bad_line(std::size_t column, std::string found, std::string expected) noexcept;
   Step stop(Errc reason, std::string text) noexcept;
@@ -82,7 +84,13 @@ class CsvReader final : public hal::RowSource {
   std::vector<bool> present_;          // by place in the row
   std::string time_column_;
   std::size_t time_place_{kUnused};
+  static constexpr double kMostS = 3.2e8;  // a record of ten years; its ns fit into 64 bits
+  static constexpr double kFarS = 60.0;
+  static constexpr int kFarRows = 16;
+  double first_time_{0.0};
   double newest_time_{0.0};
+  double far_time_{0.0};  // of the last row that was far ahead
+  int far_rows_{0};       // in a row
   bool skip_bad_lines_;
   bool stopped_{false};
   Errc reason_{Errc::kEndOfStream};

@@ -7,13 +7,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "drivers/text/quote.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::drivers {
 namespace {
@@ -238,14 +237,12 @@ Outcome<Dbc> parse_dbc(std::string_view text, std::string file) {
 }
 
 Outcome<Dbc> load_dbc(const std::string& path) {
-  std::ifstream in{path, std::ios::binary};
-  if (!in) return Failure{Errc::kIo, fmt::format("{}: cannot be opened", path)};
-  const std::string text{std::istreambuf_iterator<char>{in}, std::istreambuf_iterator<char>{}};
-  if (in.bad() || text.empty()) {
-    return Failure{Errc::kMalformed,
-                   fmt::format("{}: is empty or cannot be read; expected a DBC file", path)};
-  }
-  return parse_dbc(text, path);
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20U;  // the largest of a car have 20 MB
+  const auto text = read_whole(path, kMostBytes);
+  if (!text.ok()) return text.failure();
+  if (text.value().empty())
+    return Failure{Errc::kMalformed, fmt::format("{}: is empty; expected a DBC file", path)};
+  return parse_dbc(text.value(), path);
 }
 
 Outcome<SignalPlace> find_signal(const Dbc& dbc, std::string_view name) {

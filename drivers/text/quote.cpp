@@ -46,6 +46,35 @@ std::string quote(std::string_view text) {
   return shown + (text.size() > kShown ? "...\"" : "\"");
 }
 
+namespace {
+
+/// Bytes of the UTF-8 letter that `text` begins with; 0: none, or a control character.
+std::size_t letter_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7F ? 1 : 0;
+  const std::size_t bytes = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : 2;
+  if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < bytes) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xC0U) != 0x80U) return 0;
+  return byte(0) == 0xC2 && byte(1) < 0xA0 ? 0 : bytes;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, bool lines) {
+  std::string out;
+  while (!text.empty()) {
+    const bool newline = lines && text.front() == '\n';
+    const std::size_t bytes = newline ? 1 : letter_bytes(text);
+    if (bytes == 0)
+      fmt::format_to(std::back_inserter(out), "\\x{:02X}",
+                     static_cast<unsigned char>(text.front()));
+    out += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return out;
+}
+
 std::string nearest_names(std::string_view wanted, const std::string* names, std::size_t count,
                           std::size_t most) {
   std::vector<std::size_t> distance(count);

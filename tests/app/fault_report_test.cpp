@@ -50,16 +50,17 @@ TEST(FaultReport, NamesAFaultInParametersAndInTheReport) {
   EXPECT_GE(fault.spans.back().end_s, 30.0);
   EXPECT_THAT(result.warnings, Contains(HasSubstr("dc_jump (wheelset1)")));
   EXPECT_THAT(fault_section(back), HasSubstr("dc jump"));
-  EXPECT_THAT(plot_faults(back).script, HasSubstr("'dc jump, wheelset1' 0"));
-  EXPECT_THAT(plot_faults(result).script,
-              HasSubstr("'dc jump, wheelset1' 1,'left out: fault of the data' 0"));
+  EXPECT_THAT(figure(plot_faults(back), "faults", ""), HasSubstr(">dc jump, wheelset1</text>"));
+  const std::string lanes = figure(plot_faults(result), "faults", "");
+  EXPECT_LT(lanes.find(">dc jump, wheelset1</text>"),
+            lanes.find(">left out: fault of the data</text>"));
 }
 
 TEST(FaultReport, SaysThatASoundRecordHasNone) {
   const RunResult result = identify({});
   EXPECT_THAT(result.faults.list, IsEmpty());
   EXPECT_THAT(fault_section(result), HasSubstr("No fault"));
-  EXPECT_THAT(plot_faults(result).script, IsEmpty());
+  EXPECT_THAT(plot_faults(result).panels, IsEmpty());
 }
 
 TEST(FaultReport, KeepsAParameterThatChangedThroughTheFile) {

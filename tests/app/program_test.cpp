@@ -126,15 +126,6 @@ TEST(Report, RebuildsThePageFromTheRunAlone) {
   EXPECT_THAT(damaged.error, HasSubstr("parameters.json"));
 }
 
-TEST(Report, IsWrittenWithoutGnuplot) {
-  const Program program;
-  ASSERT_EQ(program.run("simulate --duration 60 --quiet --out run.csv").code, 0);
-  const auto outcome = program.run("identify run.csv --out a --quiet", "PATH=/nonexistent");
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.error, HasSubstr("gnuplot-nox"));
-  EXPECT_THAT(program.read("a/report.html"), HasSubstr("gnuplot-nox"));
-}
-
 TEST(ConfigVerb, ChecksAndCompletes) {
   const Program program;
   program.write("good.toml", "[car]\nmoving_mass_kg = 9700.0\n");

@@ -15,8 +15,6 @@
 #include <system_error>
 #include <thread>
 
-#include "app/report/gnuplot.hpp"
-
 namespace dampline::bus {
 namespace {
 
@@ -35,8 +33,9 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 std::string run(const std::vector<std::string>& command) {
-  const app::ChildResult result = app::run_child(command, "");
-  if (result.started && result.status == 0) return result.output;
+  const Folder folder;
+  const Ended result = Child{command, folder.path()}.wait();
+  if (result.status == 0) return result.output;
   std::string text;
   for (const std::string& word : command) text += word + " ";
   throw std::runtime_error{text + "ended with " + std::to_string(result.status) + ": " +

@@ -37,15 +37,19 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
+std::string drawn(const PhaseSnapshot& snapshot) {
+  return figure(plot_phase(snapshot), "phase", "");
+}
+
 TEST(PlotPhase, DrawsThreePlanesWithUnitsAndSectionPoints) {
   const auto snapshot = circle();
-  const std::string svg = plot_phase(*snapshot, "phase");
-  EXPECT_EQ(svg.substr(0, 4), "<svg");
-  EXPECT_EQ(svg.substr(svg.size() - 6), "</svg>");
+  const std::string svg = drawn(*snapshot);
+  EXPECT_EQ(count(svg, "<svg"), 3U);
+  EXPECT_EQ(count(svg, "</svg>"), 3U);
   EXPECT_THAT(svg, HasSubstr("y (mm)"));
   EXPECT_THAT(svg, HasSubstr("v (mm/s)"));
   EXPECT_THAT(svg, HasSubstr("m/s\u00b2"));
-  EXPECT_EQ(count(svg, "<circle"), 3 * kSectionPhases * kSectionPoints);
+  EXPECT_EQ(count(svg, "h0M") + count(svg, "h0\""), 3 * kSectionPhases * kSectionPoints);
   EXPECT_EQ(count(svg, "<g"), count(svg, "</g>"));
   EXPECT_EQ(count(svg, "<text"), count(svg, "</text>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
@@ -55,7 +59,7 @@ TEST(PlotPhase, DrawsThreePlanesWithUnitsAndSectionPoints) {
 
 /// Left edges of the cells of the first panel, between which the circle must span the panel.
 TEST(PlotPhase, FillsThePanelWithTheMotion) {
-  const std::string svg = plot_phase(*circle(), "phase");
+  const std::string svg = drawn(*circle());
   EXPECT_THAT(svg, HasSubstr(">1</text>"));  // mm
   EXPECT_THAT(svg, HasSubstr(">-1</text>"));
   EXPECT_THAT(svg, HasSubstr(">10</text>"));  // mm/s, of 16.9
@@ -66,16 +70,16 @@ TEST(PlotPhase, SaysWhyThereIsNoPicture) {
   const auto view = std::make_unique<PhaseView>(PhaseViewConfig{});
   const auto empty = std::make_unique<PhaseSnapshot>();
   view->snapshot(*empty);
-  const std::string svg = plot_phase(*empty, "phase");
-  EXPECT_EQ(count(svg, "no motion in the record"), 3U);
-  EXPECT_EQ(count(svg, "<circle"), 0U);
+  const std::string svg = drawn(*empty);
+  EXPECT_EQ(count(svg, ">no motion in the record</text>"), 3U);
+  EXPECT_EQ(count(svg, "h0M"), 0U);
   EXPECT_THAT(describe_period(*empty), HasSubstr("too short"));
 }
 
 TEST(PlotPhase, SaysHowMuchARangeClips) {
   const auto clipped = circle({.deflection_low_m = -9.5e-4, .deflection_high_m = 9.5e-4});
-  const std::string svg = plot_phase(*clipped, "phase");
-  EXPECT_EQ(count(svg, " % of the samples outside"), 2U);  // both planes with y
+  const std::string svg = drawn(*clipped);
+  EXPECT_EQ(count(svg, " % of the samples outside</text>"), 2U);  // both planes with y
   EXPECT_NE(
       svg.find(fmt::format("{:.1f} %", 100.0 * clipped->velocity_over_deflection.outside_share)),
       std::string::npos);

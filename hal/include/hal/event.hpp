@@ -29,6 +29,8 @@ enum class EventKind : std::uint8_t {
   kWheelPulse = 21,        ///< a wheel-revolution pulse
   kImpossibleEdge = 22,    ///< two edges of one direction in a row; value: +1 rising, -1 falling
   kEdgesLost = 23,         ///< value: edges that the kernel had to drop
+  kPublishFailed = 24,     ///< live.json could not be written; value: errno
+  kPublishResumed = 25,    ///< value: how often it could not be written in between
 };
 
 /// One event. Plain: it is handed between threads and stored as it is.
