@@ -84,7 +84,6 @@ double vertex(const std::array<double, 2>& side, double middle) noexcept {
 }
 
 constexpr double kSurrogateGains = 2.0;  // what a real effect gains over the surrogate's gain
-
 /// A channel that was set right is no column: what that took is known by the errors before and
 /// after.
 bool was_late(const Step& step, const Candidate& added) noexcept {
@@ -425,7 +424,9 @@ void Explainer::restate(Explanation& e) noexcept {
 
 bool Explainer::drop_worthless(Explanation& e) noexcept {
   for (std::size_t i = 0; i < e.step_count; ++i) {
-    if (e.step[i].restated_after < e.step[i].restated_before) continue;
+    // What is no column is known otherwise: a channel that was set right, impacts.
+    const bool is_column = e.model.effect[e.base_count + i].count > 0;
+    if (!is_column || e.step[i].restated_after < e.step[i].restated_before) continue;
     remove_step(e, i);
     return true;
   }
