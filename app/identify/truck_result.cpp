@@ -10,6 +10,7 @@
 
 #include "app/text/format.hpp"
 #include "app/text/summary.hpp"
+#include "dampline/effect/judgement.hpp"
 
 namespace dampline::app {
 
@@ -114,7 +115,8 @@ RunResult describe_truck(const TruckRecord& record, const ModelConfig& model) {
   fill_curve(s, result);
   const bool viscous = has(model.base, "viscous");
   const double nmse = viscous ? s.nmse_with_viscous : s.nmse;
-  result.fit = {nmse, std::sqrt(nmse), viscous ? s.held_out_nmse_with_viscous : s.held_out_nmse};
+  result.fit = {
+      nmse, std::sqrt(nmse), viscous ? s.held_out_nmse_with_viscous : s.held_out_nmse, {}, {}};
   result.std_is_lower_bound = viscous ? s.std_with_viscous_is_lower_bound : s.std_is_lower_bound;
   result.stick_share = s.stick_share;
   result.excitation = s.excitation;
@@ -122,13 +124,10 @@ RunResult describe_truck(const TruckRecord& record, const ModelConfig& model) {
   if (record.measured.rate_hz > 0.0)
     result.sample_rate_hz = Estimate{record.measured.rate_hz, record.measured.std_hz};
   result.duration_s = record.time_s(record.newest_tick + 1);
-  const Parameter& coulomb = result.parameters[0];
-  const Parameter& stiffness = result.parameters[1];
-  result.headline = fmt::format(
-      "Dry friction (Coulomb level) of {} and a spring of {}, identified from {} of record.",
-      pair_text({coulomb.value, coulomb.std}, 1.0, "N"),
-      pair_text({stiffness.value, stiffness.std}, 1e-6, "MN/m"),
-      format_duration(result.duration_s));
+  result.fit.law_width_mps = result.parameters.back().value;
+  if (!viscous)
+    result.fit.viscous = {s.viscous_nspm.value * s.velocity_rms_mps / s.coulomb_n.value,
+                          s.viscous_nspm.value / s.viscous_nspm.std};
   fill_notes(s, record, model, result);
   return result;
 }
@@ -202,6 +201,9 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   out.speed_changes = view.inputs.speed_changes;
   out.values_replaced = view.repairs.replaced;
   out.samples_spoilt = view.repairs.spoilt;
+  const auto wrong_rate = [](const Fault& f) { return f.kind == FaultKind::kWrongSampleRate; };
+  const auto list = view.list();
+  out.lasting = effect::forbids_naming(view) || std::any_of(list.begin(), list.end(), wrong_rate);
 }
 
 DriftFinding finding_of(const ParameterDrift& drift) {

@@ -10,6 +10,7 @@
 #include "app/identify/truck_result.hpp"
 #include "app/record/rate.hpp"
 #include "app/run/state.hpp"
+#include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
@@ -102,6 +103,11 @@ EstimatorConfig estimator_config(const Config& config) {
   return core;
 }
 
+Magnitudes magnitudes_of(const TruckView& view, const Config& config) {
+  constexpr double kGravityMps2 = 9.80665;
+  return {view.wheelset_mps2, kGravityMps2 * config.car.moving_mass_kg};
+}
+
 DataFaults faults_of(const TruckView& view, double nominal_hz) {
   TruckRecord record;
   record.sample_rate_hz = nominal_hz;
@@ -118,6 +124,8 @@ RunResult describe_view(const TruckView& view, const MeasuredRate& rate, const C
   RunResult result = describe_truck(record, config.model);
   describe_faults(view.faults, record, nominal_hz, result.faults);
   describe_alarms(view.alarms, record, result);
+  result.magnitudes = magnitudes_of(view, config);
+  judge_trust(nullptr, result);
   return result;
 }
 
@@ -178,8 +186,13 @@ std::string TruckRun<kParts>::state_text() const {
 
 template <Parts kParts>
 TruckView TruckRun<kParts>::view() noexcept {
-  return {core_->snapshot(), first_tick_,     newest_tick_,
-          first_time_ns_,    core_->faults(), core_->alarms()};
+  return {core_->snapshot(),
+          first_tick_,
+          newest_tick_,
+          first_time_ns_,
+          core_->faults(),
+          core_->alarms(),
+          core_->guard().block().wheelset_mps2};
 }
 
 template <Parts kParts>
@@ -218,6 +231,8 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
   describe_alarms(last.alarms, record, result);
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
+  result.magnitudes = magnitudes_of(last, config_);
+  judge_trust(nullptr, result);
   return result;
 }
 

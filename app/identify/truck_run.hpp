@@ -30,12 +30,16 @@ struct TruckView {
   std::int64_t first_time_ns{0};
   FaultView faults;
   AlarmView alarms;
+  double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz, of the newest block of spectra
 };
 
 /// A view as a result, in the record's own time. Throws RunError naming `source` when the measured
 /// rate is not the nominal one. Precondition: view.snapshot.valid.
 [[nodiscard]] RunResult describe_view(const TruckView& view, const MeasuredRate& rate,
                                       const Config& config, const std::string& source);
+
+/// What tells a wrong unit of the accelerations.
+[[nodiscard]] Magnitudes magnitudes_of(const TruckView& view, const Config& config);
 
 /// The faults of a view, in seconds from its beginning by the nominal rate.
 [[nodiscard]] DataFaults faults_of(const TruckView& view, double nominal_hz);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 
 namespace dampline::app {
@@ -79,21 +79,41 @@ void LiveExplainer::judge() {
   if (circumstances_.drift.found) out.identified.faults.drift = finding_of(circumstances_.drift);
   effect::judge(copy_->store(), impulses_, grids_, config_, circumstances_, *explainer_, out);
   if (out.explanation.conclusion == effect::Conclusion::kNotReady) return;
-  std::string text = to_json(out);
   const std::lock_guard<std::mutex> lock{mutex_};
-  newest_ = std::move(text);
+  newest_ = std::move(out);
 }
 
-std::string LiveExplainer::newest() const {
-  const std::lock_guard<std::mutex> lock{mutex_};
-  return newest_;
+namespace {
+
+/// Judged as of a file; the result itself keeps the law that it identified.
+void add(Explained found, RunResult& result) {
+  RunResult final = result;
+  final.faults = std::move(found.identified.faults);
+  found.identified = final;
+  const Explanation told = conclude(found, final);
+  result.evidence.explanation = std::move(final.evidence.explanation);
+  result.lacking.clear();
+  for (const Step& step : told.steps) result.lacking.push_back(step.effect);
+  if (!result.parameters.empty()) judge_trust(nullptr, result);
 }
 
-std::string LiveExplainer::conclude(const RunResult& identified) {
-  Explained out;
-  out.identified = identified;
-  out.circumstances = run_.circumstances();
-  return judge_sums(whole_, run_.core().effects(), *explainer_, out) ? to_json(out) : "";
+}  // namespace
+
+void LiveExplainer::add_newest(RunResult& result) const {
+  Explained found;
+  {
+    const std::lock_guard<std::mutex> lock{mutex_};
+    if (!newest_) return;
+    found = *newest_;
+  }
+  add(std::move(found), result);
+}
+
+void LiveExplainer::conclude(RunResult& result) {
+  Explained found;
+  found.identified = result;
+  found.circumstances = run_.circumstances();
+  if (judge_sums(whole_, run_.core().effects(), *explainer_, found)) add(std::move(found), result);
 }
 
 }  // namespace dampline::app

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <string>
+#include <optional>
 #include <thread>
 
 #include "app/config/config.hpp"
+#include "app/diagnosis/truck/explain.hpp"
 #include "app/identify/truck_run.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/effect/judgement.hpp"
@@ -26,11 +27,12 @@ class LiveExplainer {
 
   void start();
   void stop();
-  /// The newest explanation as explanation.json holds it; empty: there is none yet. Any thread.
-  [[nodiscard]] std::string newest() const;
-  /// After stop() and the last sample: explanation.json of the whole run, as of a file with the
-  /// same samples that can be read only once; empty when the run was too short.
-  [[nodiscard]] std::string conclude(const RunResult& identified);
+  /// Puts the newest explanation beside a result, whose trust is judged with it; where there is
+  /// none yet, nothing. Any thread.
+  void add_newest(RunResult& result) const;
+  /// After stop() and the last sample: the explanation of the whole run, as of a file with the same
+  /// samples that can be read only once; nothing when the run was too short.
+  void conclude(RunResult& result);
 
  private:
   static constexpr double kEveryS = 8.0;  // between two beginnings
@@ -57,7 +59,7 @@ class LiveExplainer {
 
   std::unique_ptr<effect::Explainer> explainer_;
   mutable std::mutex mutex_;
-  std::string newest_;
+  std::optional<Explained> newest_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

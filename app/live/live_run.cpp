@@ -102,7 +102,7 @@ void LiveRun::publish_when_fresh() {
   if (!acquisition_->status().take() || !outlets_.publish) return;
   RunResult result = live_result(acquisition_->status().front(),
                                  surroundings(std::string{name_of(state_)}), config_);
-  result.evidence.explanation = explainer_.newest();
+  explainer_.add_newest(result);
   publish(result);
 }
 
@@ -136,7 +136,7 @@ Identified LiveRun::conclude() {
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
   recorder_.events().describe(truck_.first_time_ns(), out.result);
-  out.result.evidence.explanation = explainer_.conclude(out.result);
+  explainer_.conclude(out.result);
   out.state = truck_.encoded_state();
   return out;
 }

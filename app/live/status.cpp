@@ -66,6 +66,7 @@ RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
   RunResult result;
   result.kind = "truck";
   result.headline = "Not enough motion yet to identify anything.";
+  result.trust_reasons = {result.headline};
   result.asymmetry = "not observable from accelerations";
   if (status.any_sample) result.faults = faults_of(status.view, config.input.sample_rate_hz);
   if (status.any_sample && status.view.snapshot.valid) {

@@ -26,16 +26,17 @@ std::string figure(const Plot& plot, const std::string& name, std::string_view c
 namespace {
 
 constexpr std::string_view kCurveText =
-    "The force with which the suspension resists motion, over the relative velocity. The band "
-    "holds "
-    "the truth in about 19 of 20 cases. In the grey zone the velocity is too uncertain to resolve "
+    "The force with which the suspension resists motion, over the relative velocity. In the grey "
+    "zone the velocity is too uncertain to resolve "
     "the curve. The strip at the bottom shows how many samples stand behind each part: where it is "
     "low, the curve is little more than the straight continuation of its neighbours.";
 constexpr std::string_view kRigCurveText =
-    "The part of the measured force that resists motion, over the velocity. The band holds the "
-    "truth "
-    "in about 19 of 20 cases, provided that the model fits. The strip at the bottom shows how many "
-    "samples stand behind each part.";
+    "The part of the measured force that resists motion, over the velocity. The strip at the "
+    "bottom shows how many samples stand behind each part.";
+constexpr std::string_view kBandHolds = " The band holds the truth in about 19 of 20 cases.";
+constexpr std::string_view kBandDoesNot =
+    " The band is that of this model; it does not hold the truth, since the model or the data are "
+    "not to be trusted.";
 constexpr std::string_view kFaultText =
     "Faults of sensors and of the transport. A line leads from where a fault was first seen to "
     "where "
@@ -100,14 +101,15 @@ std::string evidence_sections(const Evidence& evidence) {
   return out + section("Records that were never fitted", drawn);
 }
 
-/// What stands above everything else. Of an explanation, what identify says comes after it.
-std::string opening(const RunResult& result, const std::string& name) {
-  std::string own = fmt::format("<p class=\"lead\">{}</p>\n{}", escape_html(result.headline),
-                                warning_section(result));
+/// What stands above everything else: the result, whether it is to be trusted, and what the model
+/// lacked.
+std::string opening(const RunResult& result) {
+  const std::string own =
+      fmt::format("<p class=\"lead\">{}</p>\n{}{}", escape_html(result.headline),
+                  trust_section(result), warning_section(result));
   if (result.evidence.explanation.empty()) return own;
-  return fmt::format("<p class=\"lead\">{}</p>\n{}<h2>The model before, in {}</h2>\n{}",
-                     escape_html(explanation_headline(result.evidence)),
-                     evidence_sections(result.evidence), escape_html(name), own);
+  return fmt::format("{}<p>{}</p>\n{}", own, escape_html(explanation_headline(result.evidence)),
+                     evidence_sections(result.evidence));
 }
 
 }  // namespace
@@ -116,10 +118,13 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
                       const std::string& run_toml) {
   const bool truck = result.kind == "truck";
   const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
-  std::string body = opening(result, name);
+  std::string body = opening(result);
   body += section("Damping curve",
-                  figure(plot_curve(result), "curve", truck ? kCurveText : kRigCurveText));
-  body += section("Parameters", parameter_section(result));
+                  figure(plot_curve(result), "curve",
+                                std::string{truck ? kCurveText : kRigCurveText}.append(
+                                    result.trust == Trust::kTrusted ? kBandHolds : kBandDoesNot)));
+  body += section("Parameters", parameter_section(result)) +
+          section("The model before", base_section(result));
   body += section("Quality", quality_section(result));
   body += section("Data quality",
                   figure(plot_faults(result), "faults", kFaultText) + fault_section(result));

@@ -9,6 +9,7 @@
 #include "app/report/html.hpp"
 #include "app/report/phase_plot.hpp"
 #include "app/report/plots.hpp"
+#include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 #include "app/text/summary.hpp"
 
@@ -69,9 +70,23 @@ std::string warning_section(const RunResult& result) {
   return out;
 }
 
-std::string parameter_section(const RunResult& result) {
+std::string trust_section(const RunResult& result) {
+  std::string out = fmt::format("<p class=\"{}\">Trust: {}.</p>\n",
+                                result.trust == Trust::kTrusted ? "note" : "warning",
+                                plot_label(name_of(result.trust)));
+  if (result.trust_reasons.empty()) return out;
+  out += "<ul>\n";
+  for (const std::string& reason : result.trust_reasons)
+    out += fmt::format("<li>{}</li>\n", escape_html(reason));
+  return out + "</ul>\n";
+}
+
+namespace {
+
+std::string law_table(const std::vector<Parameter>& parameters,
+                      const std::vector<std::string>& model) {
   std::vector<std::vector<std::string>> rows;
-  for (const Parameter& p : result.parameters) {
+  for (const Parameter& p : parameters) {
     const QuantityText text = format_quantity(p.value, p.std);
     const std::string relative =
         text.std.empty() || p.value == 0.0 ? "" : percent(p.std / std::fabs(p.value));
@@ -80,7 +95,17 @@ std::string parameter_section(const RunResult& result) {
   }
   return html_table({"parameter", "value", "standard deviation", "unit", "relative", "meaning"},
                     rows, 4) +
-         fmt::format("<p class=\"note\">Model: {}.</p>\n", escape_html(joined(result.model)));
+         fmt::format("<p class=\"note\">Model: {}.</p>\n", escape_html(joined(model)));
+}
+
+}  // namespace
+
+std::string parameter_section(const RunResult& result) {
+  return law_table(result.parameters, result.model);
+}
+
+std::string base_section(const RunResult& result) {
+  return result.base ? law_table(result.base->parameters, result.base->model) : "";
 }
 
 std::string quality_section(const RunResult& result) {

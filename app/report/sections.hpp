@@ -9,7 +9,11 @@ namespace dampline::app {
 
 /// The parts of the page that are text and tables, as HTML.
 [[nodiscard]] std::string warning_section(const RunResult& result);
+/// Whether a script may act on the result, with the reasons.
+[[nodiscard]] std::string trust_section(const RunResult& result);
 [[nodiscard]] std::string parameter_section(const RunResult& result);
+/// The law that identify states, where an explanation added to it; else empty.
+[[nodiscard]] std::string base_section(const RunResult& result);
 [[nodiscard]] std::string quality_section(const RunResult& result);
 [[nodiscard]] std::string excluded_section(const RunResult& result);
 /// The methods beside the wavelet windows; those that the record contradicts are grey, with the

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/error.hpp"
+#include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app::rig {
@@ -72,14 +73,7 @@ Estimate find(const core::Snapshot& snapshot, core::Parameter parameter) {
   return {kUnknown, kUnknown};
 }
 
-constexpr double kPoorRrse = 0.3;
 constexpr double kSpringMatters = 0.8;  // of the held-out error without one
-
-std::string words(const Parameter& parameter) {
-  const QuantityText text = format_quantity(parameter.value, parameter.std);
-  const std::string band = text.std.empty() ? "" : " ± " + text.std;
-  return fmt::format("{} {}{} {}", parameter.name, text.value, band, parameter.unit);
-}
 
 void fill_parameters(const core::Snapshot& snapshot, RunResult& result) {
   for (std::size_t i = 0; i < snapshot.size; ++i) {
@@ -145,21 +139,6 @@ std::string velocity_note(const core::Config& config) {
                      2 * config.velocity_half_width + 1);
 }
 
-bool is_poor(const core::Errors& errors) { return std::sqrt(errors.nmse) > kPoorRrse; }
-
-std::string fit_text(const core::Errors& errors) {
-  const double rrse = std::sqrt(errors.nmse);
-  const double held_out = std::sqrt(errors.held_out_nmse);
-  if (!is_poor(errors))
-    return fmt::format("The model explains this rig up to rrse {:.3f}, held out {:.3f}.", rrse,
-                       held_out);
-  return fmt::format(
-      "This is a poor model of this rig: rrse {:.3f}, held out {:.3f}. An effect is missing, and "
-      "the "
-      "parameters are only the best that this model can do.",
-      rrse, held_out);
-}
-
 std::string spring_note(const Findings& f) {
   if (!f.with_spring || !f.with_spring->valid) return "";
   if (f.with_spring->held_out_nmse > kSpringMatters * f.snapshot.held_out_nmse) return "";
@@ -173,18 +152,8 @@ std::string spring_note(const Findings& f) {
 }
 
 void fill_notes(const Findings& f, RunResult& result) {
-  (is_poor(f.errors) ? result.warnings : result.notes).push_back(fit_text(f.errors));
   for (std::string note : {spring_note(f), filter_note(f), velocity_note(f.config)})
     if (!note.empty()) result.notes.push_back(std::move(note));
-}
-
-std::string headline(const Findings& f, const RunResult& result) {
-  std::string text;
-  for (const Parameter& parameter : result.parameters)
-    text += (text.empty() ? "" : ", ") + words(parameter);
-  return fmt::format("{}: {} Rrse {:.3f}, from {} of record.", text,
-                     is_poor(f.errors) ? "a poor model of this rig." : "the model fits.",
-                     std::sqrt(f.errors.nmse), format_duration(result.duration_s));
 }
 
 }  // namespace
@@ -275,15 +244,15 @@ RunResult result_of(const Findings& f) {
   fill_parameters(f.snapshot, result);
   fill_counts(f.snapshot.counts, result);
   fill_curve(f.snapshot.curve, result);
-  result.fit = {f.errors.nmse, std::sqrt(f.errors.nmse), f.errors.held_out_nmse};
+  result.fit = {f.errors.nmse, std::sqrt(f.errors.nmse), f.errors.held_out_nmse, {}, {}};
   result.asymmetry = asymmetry_text(f.snapshot);
   const auto samples = static_cast<double>(f.snapshot.counts.samples);
   result.excitation = 1.0 - static_cast<double>(f.still_samples) / samples;
   result.sample_rate_hz = Estimate{f.config.sample_rate_hz, 0.0};
   result.latency_s = f.latency_samples / f.config.sample_rate_hz;
   result.duration_s = static_cast<double>(f.ticks) / f.config.sample_rate_hz;
-  result.headline = headline(f, result);
   fill_notes(f, result);
+  judge_trust(nullptr, result);
   return result;
 }
 

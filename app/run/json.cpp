@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/error.hpp"
+#include "app/run/trust.hpp"
 
 namespace dampline::app {
 namespace {
@@ -33,6 +34,7 @@ class Put {
   void choice(const char* key, bool value, const char* yes, const char* no) {
     json_[key] = value ? yes : no;
   }
+  void trust(const char* key, Trust value) { json_[key] = name_of(value); }
   void estimate(const char* key, const std::optional<Estimate>& value, const char* unit) {
     json_[key] = nullptr;
     if (value) json_[key] = {{"value", value->value}, {"std", value->std}, {"unit", unit}};
@@ -79,6 +81,7 @@ class Get {
   void choice(const char* key, bool& value, const char* yes, const char* /*no*/) {
     value = json_.at(key) == yes;
   }
+  void trust(const char* key, Trust& value) { value = trust_of(json_.at(key)); }
   void estimate(const char* key, std::optional<Estimate>& value, const char* /*unit*/) {
     const Json& json = json_.at(key);
     if (json.is_null()) return;
@@ -195,6 +198,12 @@ void list_members(Archive&& a, Of<Parameter> auto& p) {
   a("value", p.value);
   a("std", p.std);
   a("unit", p.unit);
+  if (!a.has("correlation", p.correlation != 0.0)) return;
+  a.object("correlation", [&](auto c) {
+    c("with", p.twin);
+    c("value", p.correlation);
+  });
+  a.constant("separable", is_separable(p));
 }
 
 template <class Archive>
@@ -228,12 +237,24 @@ void list_members(Archive&& a, Of<Fit> auto& f) {
 }
 
 template <class Archive>
+void list_members(Archive&& a, Of<BaseLaw> auto& b) {
+  a("model", b.model);
+  a("parameters", b.parameters);
+  a("fit", b.fit);
+}
+
+template <class Archive>
 void list_members(Archive&& a, Of<RunResult> auto& r) {
   a("parameters", r.parameters);
+  if (a.has("base", r.base.has_value())) a("base", r.base);
   a("counts", r.counts);
   a("fit", r.fit);
   a("kind", r.kind);
   a("headline", r.headline);
+  if (a.has("trust", true)) {
+    a.trust("trust", r.trust);
+    a("trust_reasons", r.trust_reasons);
+  }
   a("model", r.model);
   a("std_is_lower_bound", r.std_is_lower_bound);
   a("stick_share", r.stick_share);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dampline/explanation.hpp"
 #include "dampline/phase/view.hpp"
 #include "dampline/snapshot.hpp"
 
@@ -144,6 +146,7 @@ struct DataFaults {
   std::uint64_t speed_changes{0};    ///< input, too
   std::uint64_t values_replaced{0};  ///< single wrong samples, by what their neighbours say
   std::uint64_t samples_spoilt{0};   ///< left out because of a fault that passed
+  bool lasting{false};               ///< nothing was done about one that changes the numbers
   std::optional<DriftFinding> drift;
   std::vector<AlarmFinding> alarms;  ///< the newest
 };
@@ -151,9 +154,24 @@ struct DataFaults {
 /// A named result with its unit; names as in parameters.json ("coulomb", "coulomb_positive", ...).
 struct Parameter {
   std::string name;
-  double value{0.0};
+  double value {
+    0.0  /// Another one that it is most correlated with in this record; 0: not worked out.
+        std::string twin{};
+    double correlation{0.0};
+  };
   double std{0.0};
   std::string unit;
+};
+
+/// Otherwise only what the two do together is known.
+[[nodiscard]] inline bool is_separable(const Parameter& p) {
+  return std::abs(p.correlation) <= effect::kInseparable;
+}
+
+/// What a viscous part would be beside a truck's dry friction.
+struct ViscousPart {
+  double share{0.0};   ///< of dry friction, at the rms velocity
+  double sigmas{0.0};  ///< over its deviation
 };
 
 /// Errors of the fit, normalised by the variance of what was fitted. Absent: not computed.
@@ -161,6 +179,29 @@ struct Fit {
   std::optional<double> nmse;
   std::optional<double> rrse;
   std::optional<double> held_out_nmse;
+  std::optional<ViscousPart> viscous{};   ///< this one and the next are in no file
+  std::optional<double> law_width_mps{};  ///< of a truck
+};
+
+/// Whether a script may act on a result, from good to bad.
+enum class Trust : std::uint8_t {
+  kTrusted,
+  kModelIncomplete,  ///< something real is left that the model does not explain
+  kDataFaulty,       ///< faults of sensors or transport that change the numbers
+  kNotIdentified,    ///< numbers that cannot be, or that nothing supports
+};
+
+/// What tells a wrong unit of a truck's accelerations.
+struct Magnitudes {
+  double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz
+  double weight_n{0.0};       ///< of the moving mass
+};
+
+/// What identify says of a record that an explanation added to.
+struct BaseLaw {
+  std::vector<std::string> model;
+  std::vector<Parameter> parameters;
+  Fit fit;
 };
 
 struct CurveRow {
@@ -241,12 +282,16 @@ struct LatenessRow {
 /// What an identification hands to the run directory. The order of `parameters`, `counts` and
 /// `notes` is the order in which people see them.
 struct RunResult {
-  std::string kind;                ///< "truck" or "rig"
-  std::string headline;            ///< the result in one plain sentence
-  std::vector<std::string> model;  ///< terms
+  std::string kind;      ///< "truck" or "rig"
+  std::string headline;  ///< the result in one plain sentence
+  Trust trust{Trust::kNotIdentified};
+  std::vector<std::string> trust_reasons;  ///< the gravest first; empty: trusted
+  std::vector<std::string> model;          ///< terms
   std::vector<Parameter> parameters;
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   Fit fit;
+  std::vector<std::string> lacking;  ///< effects that an explanation beside a live result names
+  std::optional<BaseLaw> base;  ///< after an explanation that added something: the model before
   bool std_is_lower_bound{false};
   std::optional<double> stick_share;
   std::optional<double> excitation;  ///< share of the record that moved
@@ -261,13 +306,14 @@ struct RunResult {
   std::vector<DensityTable> densities;
   std::shared_ptr<const PhaseSnapshot> phase;  ///< of a truck; large, hence shared
   Convergence convergence;
-  std::vector<MotionRow> motion;   ///< an excerpt of at most 20 s
-  std::vector<ForceRow> force;     ///< an excerpt; empty for a truck
-  std::vector<Excluded> excluded;  ///< capped
-  std::uint64_t excluded_more{0};  ///< stretches beyond the cap
-  std::vector<RunEvent> events;    ///< capped
-  std::uint64_t events_more{0};    ///< events beyond the cap
-  DataFaults faults;               ///< of a truck record
+  std::vector<MotionRow> motion;         ///< an excerpt of at most 20 s
+  std::vector<ForceRow> force;           ///< an excerpt; empty for a truck
+  std::vector<Excluded> excluded;        ///< capped
+  std::uint64_t excluded_more{0};        ///< stretches beyond the cap
+  std::vector<RunEvent> events;          ///< capped
+  std::uint64_t events_more{0};          ///< events beyond the cap
+  DataFaults faults;                     ///< of a truck record
+  std::optional<Magnitudes> magnitudes;  ///< of a truck record; in no file
   std::optional<LiveFigures> live;
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out
   Evidence evidence;                  ///< of an explanation

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
@@ -137,6 +138,13 @@ std::string fit_line(const RunResult& result) {
   return out.empty() ? "" : fmt::format("  {:<20} {}\n", "fit", out);
 }
 
+std::string trust_lines(const RunResult& result) {
+  std::string out = fmt::format("  {:<20} {}\n", "trust", name_of(result.trust));
+  for (const std::string& reason : result.trust_reasons)
+    out += fmt::format("  {:<20} {}\n", "", reason);
+  return out;
+}
+
 std::string excluded_line(const RunResult& result) {
   if (result.excluded.empty()) return fmt::format("  {:<20} nothing\n", "left out");
   std::map<std::string, double> seconds;
@@ -153,6 +161,7 @@ std::string excluded_line(const RunResult& result) {
 std::string summarize(const RunResult& result) {
   std::string out = result.headline + "\n" + parameter_lines(result) + method_lines(result) +
                     fit_line(result) + excluded_line(result);
+  out += trust_lines(result);
   if (!result.asymmetry.empty()) out += fmt::format("  {:<20} {}\n", "asymmetry", result.asymmetry);
   if (result.std_is_lower_bound)
     out += fmt::format("  {:<20} the stated deviations are lower bounds\n", "uncertainty");

@@ -2,6 +2,7 @@
 #include "app/rig/identify.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -19,8 +20,7 @@
 
 #include "app/config/config.hpp"
 #include "app/diagnosis/rig/explain.hpp"
-#include "app/diagnosis/truck/explain.hpp"
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/interface.hpp"
@@ -31,6 +31,7 @@
 #include "app/run/directory.hpp"
 #include "app/run/json.hpp"
 #include "app/run/provenance.hpp"
+#include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 #include "app/text/summary.hpp"
 #include "app/verbs/verbs.hpp"
@@ -47,6 +48,7 @@ struct RunFlags {
   bool quiet{false};
   bool force{false};
   bool no_report{false};
+  bool strict{false};
 
   /// Where the run goes that was made of `source`.
   [[nodiscard]] std::filesystem::path place(const std::string& source) const {
@@ -65,6 +67,17 @@ struct RunFlags {
     if (!no_report) stage_report(files, directory);
     directory.commit();
   }
+  /// The exit code. What is not shown is said on the standard error.
+  [[nodiscard]] int verdict(const RunResult& result) const {
+    constexpr int kNotTrusted = 3;
+    if (result.trust == Trust::kTrusted) return 0;
+    if (json || quiet || strict)
+      warn(fmt::format("{}: {}", name_of(result.trust), fmt::join(result.trust_reasons, " ")));
+    return strict ? kNotTrusted : 0;
+  }
+  void add_strict(CLI::App& verb) {
+    verb.add_flag("--strict", strict, "end with 3 where the result is not to be trusted");
+  }
 };
 
 struct ExplainFlags : RunFlags {
@@ -76,7 +89,6 @@ struct ExplainFlags : RunFlags {
 
 /// What a run directory and the terminal get.
 struct Findings {
-  std::string json;
   std::string summary;
   RunFiles files;
 };
@@ -86,12 +98,13 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
     throw UsageError{
         fmt::format("RECORD: found {} records, expected one of a truck; others go with --validate",
                     options.records.size())};
-  const Explained found = explain_truck(config, {{options.records.front(), options.skip_bad_lines},
-                                                 options.validation,
-                                                 options.show_progress()});
-  return {to_json(found),
-          summarize(found),
-          {found.identified, write_run_toml(config, found.inputs), found.state}};
+  Explained found = explain_truck(config, {{options.records.front(), options.skip_bad_lines},
+                                           options.validation,
+                                           options.show_progress()});
+  RunResult result = found.identified;
+  const Explanation explanation = conclude(found, result);
+  return {summarize(explanation),
+          {std::move(result), write_run_toml(config, found.inputs), std::move(found.state)}};
 }
 
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
@@ -103,11 +116,10 @@ Findings explain_rig_records(const Config& config, const ExplainFlags& options,
   for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
   for (const std::string& path : options.validation)
     inputs.push_back(describe_input(path, "validation"));
-  RunResult first = rig::identify(
+  RunResult result = rig::identify(
       rig::csv_record(options.records.front(), config.input, options.skip_bad_lines), config);
-  first.evidence = found.evidence;
-  first.notes.insert(first.notes.end(), found.notes.begin(), found.notes.end());
-  return {to_json(found), summarize(found), {first, write_run_toml(config, inputs), ""}};
+  const Explanation explanation = rig::conclude(found, result);
+  return {summarize(explanation), {std::move(result), write_run_toml(config, inputs), ""}};
 }
 
 int explain(const ExplainFlags& options) {
@@ -119,15 +131,15 @@ int explain(const ExplainFlags& options) {
   const Config config = with_record_rate(seen.config, first, kind);
   Findings found = kind == SourceKind::kRigCsv ? explain_rig_records(config, options, seen.notes)
                                                : explain_truck_record(config, options);
-  found.files.result.evidence.explanation = found.json;
+  const RunResult& result = found.files.result;
   options.write(found.files, directory);
   if (options.json) {
-    fmt::print("{}", found.json);
+    fmt::print("{}", result.evidence.explanation);
   } else if (!options.quiet) {
     fmt::print("{}{}: {}\n", drivers::printable(found.summary, true),
                options.no_report ? "results" : "report", options.outcome(place));
   }
-  return 0;
+  return options.verdict(result);
 }
 
 }  // namespace
@@ -156,6 +168,7 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
   verb->add_flag("--skip-bad-lines", options->skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
+  options->add_strict(*verb);
   verb->callback([options, &action] { action = [options] { return explain(*options); }; });
 }
 
@@ -292,7 +305,7 @@ int identify(const IdentifyFlags& options) {
                        std::move(found.state)};
   write_result(options, files, directory, place, kind);
   print_result(options, files.result, place);
-  return 0;
+  return options.verdict(files.result);
 }
 
 void add_live_flags(CLI::App& verb, IdentifyFlags& options) {
@@ -348,6 +361,7 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--skip-bad-lines", options->source.skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
   verb->add_flag("--no-report", options->no_report, "do not draw report.html");
+  options->add_strict(*verb);
   add_live_flags(*verb, *options);
   verb->callback([options, &action] { action = [options] { return identify(*options); }; });
 }

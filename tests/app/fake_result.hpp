@@ -34,6 +34,7 @@ inline RunResult fake_result() {
   RunResult r;
   r.kind = "truck";
   r.headline = "Dry friction of 8 351 N ± 14 N on a spring of 5.262 MN/m ± 0.016 MN/m.";
+  r.trust = Trust::kTrusted;
   r.model = {"linear spring", "coulomb"};
   r.parameters = {{"coulomb", 8351.2, 14.3, "N"},
                   {"stiffness", 5.262e6, 1.6e4, "N/m"},

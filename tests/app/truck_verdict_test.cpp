@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 
 namespace dampline::app {

@@ -63,7 +63,7 @@ TEST(ForceOutOfStep, LeavesTheNextEffectToBeFound) {
       62);
   ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
   EXPECT_NE(found.steps[0].effect, found.steps[1].effect);
-  for (const rig::Step& step : found.steps)
+  for (const app::Step& step : found.steps)
     EXPECT_TRUE(step.effect == "time_skew" || step.effect == "offset_force") << summarize(found);
 }
 

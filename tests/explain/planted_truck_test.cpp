@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/diagnosis/truck/explain.hpp"
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "tests/drivers/temporary_file.hpp"
 #include "tests/explain/other_truck.hpp"
 

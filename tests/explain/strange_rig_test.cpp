@@ -118,7 +118,7 @@ TEST(AStrangersRig, IsToldOfARateThatIsNotItsOwn) {
 }
 
 double named_gain(const rig::Explanation& found) {
-  for (const rig::Step& step : found.steps)
+  for (const app::Step& step : found.steps)
     if (step.effect == "gain_error") return step.parameters[0].value;
   return 0.0;
 }
@@ -160,7 +160,7 @@ TEST(AStrangersRig, IsResampledWhereItsTimesWander) {
   const rig::Explanation found = explained(text);
   ASSERT_FALSE(found.notes.empty());
   EXPECT_THAT(found.notes[0], HasSubstr("not uniform"));
-  for (const rig::Step& s : found.steps) EXPECT_EQ(s.effect, "quadratic_damping");
+  for (const app::Step& s : found.steps) EXPECT_EQ(s.effect, "quadratic_damping");
   EXPECT_LT(found.final.fit.held_out_nmse, 0.03);
 }
 

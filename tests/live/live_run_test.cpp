@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "app/diagnosis/truck/explain.hpp"
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "app/error.hpp"
 #include "app/record/frames.hpp"
 #include "dampline/sample/assembler.hpp"
@@ -150,8 +150,11 @@ TEST_F(LiveRunTest, ExplainsWhatAFileOfTheSameFramesDoes) {
   const auto live = nlohmann::json::parse(found.result.evidence.explanation);
   const nlohmann::json file = explanation_of(sink_.frames);
   EXPECT_EQ(live.at("steps").at(0).at("effect"), "viscous");
-  for (const char* key : {"verdict", "base", "final", "rejected", "faults"})
+  for (const char* key : {"verdict", "trust", "rejected", "faults"})
     EXPECT_EQ(live.at(key), file.at(key)) << key;
+  for (const char* model : {"base", "final"})
+    for (const char* key : {"terms", "held_out_nmse"})
+      EXPECT_EQ(live.at(model).at(key), file.at(model).at(key)) << model;
   ASSERT_EQ(live.at("steps").size(), file.at("steps").size());
   for (const char* key : {"effect", "parameters", "held_out_nmse_after", "runners_up"})
     EXPECT_EQ(live.at("steps").at(0).at(key), file.at("steps").at(0).at(key)) << key;

@@ -133,7 +133,8 @@ TEST_F(IdentifyRig, SaysThatAModelIsPoorAndThatASpringWouldHelp) {
   });
   const RunResult result = identify();
   EXPECT_GT(*result.fit.rrse, 0.3);
-  EXPECT_THAT(result.headline, HasSubstr("poor model"));
+  EXPECT_EQ(result.trust, app::Trust::kModelIncomplete);
+  EXPECT_THAT(result.headline, HasSubstr("does not fit"));
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("linear spring of")));
   config_.model.stiffness = "identify";
   config_.model.base = {"coulomb", "viscous"};
@@ -242,7 +243,8 @@ TEST(ShippedExamples, FrictionDamperIsSaidToBePoorlyExplained) {
   if (result.kind.empty()) GTEST_SKIP() << "no friction_damper record in the shared data";
   EXPECT_GT(*result.fit.rrse, 0.60);
   EXPECT_LT(*result.fit.rrse, 0.66);
-  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("poor model of this rig: rrse 0.6")));
+  EXPECT_EQ(result.trust, app::Trust::kModelIncomplete);
+  EXPECT_THAT(result.trust_reasons, testing::Contains(HasSubstr("`dampline explain`")));
   for (const char* name : {"coulomb_positive", "coulomb_negative", "viscous_positive"})
     EXPECT_EQ(find(result, name).name, name);
 }

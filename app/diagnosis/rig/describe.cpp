@@ -50,10 +50,12 @@ void Search::describe(Model& model, const Judged& judged) const {
   constexpr double kWidthPlace = 0.0132;  // of a width: the deviation within the finest grid
   model.terms = terms();
   model.fit = judged.fit;
+  model.ridge = ridge();
   for (const Eigen::Index i : judged.set) {
     const Regressor& column = library_.at(i);
     const auto add = [&](const char* name, const char* unit) {
       const Estimate e = judged.of(i);
+      model.coefficients.emplace_back(model.parameters.size(), place_of(judged.set, i));
       model.parameters.push_back({name, e.value, e.std, unit});
     };
     model.columns.push_back(column);

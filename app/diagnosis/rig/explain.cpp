@@ -72,8 +72,8 @@ Validated validate(const Explanation& explanation, Series series) {
   const Eigen::VectorXd before =
       model_force(explanation.base, rows_of(explanation.base.columns, series, 1));
   series = seen_by(explanation.final, series);
-  out.start_m = start_of(explanation.final, series);
-  series.start_m = out.start_m;
+  series.start_m = start_of(explanation.final, series);
+  out.start_m = series.start_m;
   const Rows final = rows_of(explanation.final.columns, series, 1);
   if (final.values.rows() < 2)
     throw RunError{fmt::format("{}: too short to validate on", out.record)};

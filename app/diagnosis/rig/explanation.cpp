@@ -1,123 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "app/diagnosis/rig/explanation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "app/diagnosis/common/evidence.hpp"
-#include "app/diagnosis/common/json.hpp"
 #include "app/diagnosis/rig/trials.hpp"
-#include "app/text/format.hpp"
 
 namespace dampline::app::rig {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json parameters_json(const std::vector<Parameter>& parameters) {
-  Json out = Json::array();
-  for (const Parameter& p : parameters)
-    out.push_back({{"name", p.name}, {"value", p.value}, {"std", p.std}, {"unit", p.unit}});
-  return out;
-}
-
-/// Mean over the records of what each one's error is.
-double mean_rrse(const Fit& fit) {
-  double sum = 0.0;
-  for (const double nmse : fit.record_nmse) sum += std::sqrt(nmse);
-  return sum / static_cast<double>(fit.record_nmse.size());
-}
-
-Json model_json(const Model& model, const std::vector<std::string>& records) {
-  Json list = Json::array();
+app::ModelFound found_of(const Model& model, const std::vector<std::string>& records) {
+  app::ModelFound out{model.terms, model.fit.held_out_nmse, model.parameters, {}};
   for (std::size_t r = 0; r < records.size(); ++r)
-    list.push_back(
-        {{"record", records[r]}, {"held_out_rrse", std::sqrt(model.fit.record_nmse[r])}});
-  return {{"terms", model.terms},
-          {"held_out_nmse", model.fit.held_out_nmse},
-          {"held_out_rrse", std::sqrt(model.fit.held_out_nmse)},
-          {"held_out_rrse_mean", mean_rrse(model.fit)},
-          {"records", list},
-          {"parameters", parameters_json(model.parameters)}};
-}
-
-/// "like X, law incomplete", where more is left than a complete law would leave.
-Json note_of(const Explanation& e, const Step& step) {
-  if (e.is_complete()) return nullptr;
-  return fmt::format("like {}, law incomplete", step.effect);
-}
-
-Json floor_json(const Model& model, double value) {
-  return model.floor_nmse > 0.0 ? Json(value) : Json(nullptr);
-}
-
-Json step_json(const Explanation& e, const Step& step) {
-  return {{"effect", step.effect},
-          {"terms", step.terms},
-          {"held_out_nmse_before", step.held_out_before},
-          {"held_out_nmse_after", step.held_out_after},
-          {"parameters", parameters_json(step.parameters)},
-          {"evidence",
-           {{"of", step.of},
-            {"gain", step.gain},
-            {"block_t", step.block_t},
-            {"left_over_floor", floor_json(e.final, e.final.left_over_floor())}}},
-          {"note", note_of(e, step)},
-          {"runners_up", judged_json(step.runners_up)}};
-}
-
-Json validated_json(const Validated& v) {
-  Json out{{"record", v.record},
-           {"rrse_before", v.rrse_before},
-           {"rrse_after", v.rrse_after},
-           {"nmse_before", v.rrse_before * v.rrse_before},
-           {"nmse_after", v.rrse_after * v.rrse_after},
-           {"start_slip_m", v.start_m}};
-  if (!v.has_reference) return out;
-  out["rrse_reference"] = v.reference_rrse;
-  out["rrse_after_where_reference"] = v.same_rows_rrse;
+    out.records.emplace_back(records[r], model.fit.record_nmse[r]);
   return out;
 }
 
-std::string lines_of(const std::vector<Parameter>& parameters) {
-  std::string text;
-  for (const Parameter& p : parameters) {
-    const QuantityText q = format_quantity(p.value, p.std);
-    text += fmt::format("    {:<36} {}{} {}\n", p.name, q.value, q.std.empty() ? "" : " ± " + q.std,
-                        p.unit);
-  }
-  return text;
-}
-
-std::string model_text(const char* name, const Model& model) {
-  std::string terms;
-  for (const std::string& term : model.terms) terms += (terms.empty() ? "" : ", ") + term;
-  return fmt::format("{:<6} held-out rrse {:.3f} ({:.3f} in the mean of the records): {}\n", name,
-                     std::sqrt(model.fit.held_out_nmse), mean_rrse(model.fit), terms);
-}
-
-const char* sentence(const Explanation& e) {
-  if (!e.alike.empty() && e.steps.empty())
-    return "effects that this record cannot tell apart explain what is left alike: none is named";
-  if (!e.steps.empty())
-    return e.is_complete() ? "the model lacked what follows"
-                           : "the model lacked what follows, and something more";
-  return e.is_complete() ? "no effect of the library improves the model"
-                         : "something is left that no effect of the library explains";
-}
-
-std::string floor_text(const Explanation& e) {
-  if (!(e.final.floor_nmse > 0.0)) return "floor  not known\n";
-  std::string text = fmt::format(
-      "floor  held-out rrse {:.3g} by noise and resolution alone; left: {:.2f} times that (nmse)\n",
-      std::sqrt(e.final.floor_nmse), e.final.left_over_floor());
-  if (!e.is_complete() && !e.steps.empty())
-    text += fmt::format("       like {}, law incomplete\n", e.steps.front().effect);
-  if (!e.alike.empty()) text += fmt::format("alike  {}\n", e.alike);
-  return text;
+/// Every comparison carries a constant and a spring that the model may not have: runners-up are
+/// told beside the step's own error.
+Step beside_the_step(Step step) {
+  const double own = 1.0 - step.gain;
+  for (JudgedCandidate& c : step.runners_up)
+    if (own > 0.0) c.held_out_nmse = step.held_out_after * (1.0 - c.gain) / own;
+  return step;
 }
 
 constexpr double kSegmentS = 8.0;  // of the spectrum, where the records are long enough
@@ -125,6 +32,7 @@ constexpr double kSegmentPoints = 512.0;
 constexpr double kLawReach = 2.0;  // of the velocity's rms
 constexpr int kLawPoints = 30;     // on each side
 constexpr double kLeastTurn = 0.02;
+constexpr Eigen::Index kFewestSamples = 200;
 
 /// Samples that become one point: a segment must hold some periods of the motion.
 Eigen::Index joined_samples(const std::vector<Series>& records) {
@@ -179,17 +87,78 @@ void take_record(const Explanation& e, const Series& series, double start_s, Eig
   meter.gap();
 }
 
-/// In steady sliding at v, undeflected: every friction element has slipped long since.
-double sliding_force(const Model& model, double v) {
+/// Columns in steady sliding at v, undeflected: every friction element has slipped long since.
+Eigen::VectorXd sliding(const Model& model, double v) {
   Series slide;
   slide.interval_s = 1.0;
   slide.deflection_m = Eigen::Vector2d{v < 0.0 ? 1.0 : -1.0, 0.0};
   slide.velocity_mps = Eigen::Vector2d{v, v};
   slide.force_n = Eigen::Vector2d::Zero();
-  double out = 0.0;
+  Eigen::VectorXd out{model.fit.theta.size()};
   for (std::size_t c = 0; c < model.columns.size(); ++c)
-    out += model.fit.theta[static_cast<Eigen::Index>(c)] * evaluate(model.columns[c], slide)[1];
+    out[static_cast<Eigen::Index>(c)] = evaluate(model.columns[c], slide)[1];
   return out;
+}
+
+double sliding_force(const Model& model, double v) {
+  return sliding(model, v).dot(model.fit.theta);
+}
+
+Series head_of(Series series, Eigen::Index count) {
+  series.deflection_m.conservativeResize(count);
+  series.velocity_mps.conservativeResize(count);
+  series.force_n.conservativeResize(count);
+  for (Eigen::VectorXd* extra : {&series.accel_mps2, &series.left_out})
+    if (extra->size() > count) extra->conservativeResize(count);
+  return series;
+}
+
+/// The final model's coefficients as the first part of the records gives them, again and again.
+Convergence convergence_of(const Model& model, const std::vector<Series>& records) {
+  constexpr int kRows = 12;
+  Convergence out;
+  double whole_s = 0.0;
+  for (const Series& s : records) whole_s += static_cast<double>(s.size()) * s.interval_s;
+  for (const auto& [parameter, place] : model.coefficients) {
+    out.names.push_back(model.parameters[parameter].name);
+    out.units.push_back(model.parameters[parameter].unit);
+  }
+  ColumnSet all(model.columns.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (int row = 1; row <= kRows && !out.names.empty(); ++row) {
+    std::vector<Series> seen;
+    const double time_s = whole_s * row / kRows;
+    double left_s = time_s;
+    for (const Series& s : records) {
+      const auto count = std::min(s.size(), static_cast<Eigen::Index>(left_s / s.interval_s));
+      if (count >= kFewestSamples) seen.push_back(head_of(seen_by(model, s), count));
+      left_s -= static_cast<double>(count) * s.interval_s;
+    }
+    if (seen.empty()) continue;
+    const Fit fit = Regression{model.columns, seen}.fit(all, model.ridge);
+    if (!fit.ok || !fit.covariance.allFinite()) continue;
+    Convergence::Row& added = out.rows.emplace_back(Convergence::Row{time_s, {}});
+    for (const auto& [parameter, place] : model.coefficients)
+      added.estimates.push_back(fit.estimate(place));
+  }
+  return out;
+}
+
+/// Forces of the final law in steady sliding in the place of those of `curve`, at its velocities.
+void put_law(const Explanation& e, std::vector<CurveRow>& curve) {
+  double slowest = 0.0;
+  for (const CurveRow& row : curve)
+    if (row.velocity_mps > 0.0 && (slowest == 0.0 || row.velocity_mps < slowest))
+      slowest = row.velocity_mps;
+  bool past_zero = false;
+  for (CurveRow& row : curve) {
+    // Below the slowest node nothing is known of the jump at zero but that it is one.
+    const double v = row.velocity_mps != 0.0 ? row.velocity_mps : past_zero ? slowest : -slowest;
+    past_zero = past_zero || row.velocity_mps == 0.0;
+    const Eigen::VectorXd columns = sliding(e.final, v);
+    row.force_n = columns.dot(e.final.fit.theta);
+    row.std_n = std::sqrt(std::max(columns.dot(e.final.fit.covariance * columns), 0.0));
+  }
 }
 
 }  // namespace
@@ -205,64 +174,47 @@ const char* Explanation::verdict() const {
   return is_complete() ? "explained" : "partly_explained";
 }
 
-std::string to_json(const Explanation& e) {
-  Json steps = Json::array();
-  for (const Step& step : e.steps) steps.push_back(step_json(e, step));
-  const bool unknown = !e.is_complete();
-  if (unknown && e.steps.empty())
-    steps.push_back(unknown_step(e.base.terms, e.base.fit.held_out_nmse, e.signature));
-  Json validation = Json::array();
-  for (const Validated& v : e.validation) validation.push_back(validated_json(v));
-  const Json json{
-      {"verdict", e.verdict()},
-      {"base", model_json(e.base, e.records)},
-      {"steps", steps},
-      {"final", model_json(e.final, e.records)},
-      {"rejected", judged_json(e.rejected)},
-      {"alike", e.alike.empty() ? Json(nullptr) : Json(e.alike)},
-      {"floor_nmse", floor_json(e.final, e.final.floor_nmse)},
-      {"left_over_floor", floor_json(e.final, e.final.left_over_floor())},
-      {"held_out", e.whole_records ? "records" : "blocks"},
-      {"filter_hz", e.filter_hz > 0.0 ? Json(e.filter_hz) : Json(nullptr)},
-      {"validation", validation},
-      {"faults", Json::array()},
-      {"notes", e.notes},
-      {"force", e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured"},
-      {"signature", signature_json(e.signature, {"deflection", "velocity", "speed"}, unknown)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+namespace {
+
+app::Explanation found_in(const Explanation& e) {
+  app::Explanation out;
+  out.verdict = e.verdict();
+  out.known = {true, !e.is_complete(), false};
+  out.base = found_of(e.base, e.records);
+  out.final = found_of(e.final, e.records);
+  for (const Step& step : e.steps) out.steps.push_back(beside_the_step(step));
+  out.rejected = e.rejected;
+  out.floor_nmse = e.final.floor_nmse;
+  out.left_over_floor = e.final.left_over_floor();
+  out.unknown = out.law_incomplete = !e.is_complete();
+  out.alike = e.alike;
+  if (e.whole_records) out.held_out = "records";
+  out.filter_hz = e.filter_hz;
+  out.force = e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured";
+  out.validation.assign(e.validation.begin(), e.validation.end());
+  out.notes = e.notes;
+  out.signature = e.signature;
+  out.channels = {"deflection", "velocity", "speed"};
+  return out;
 }
 
-std::string summarize(const Explanation& e) {
-  std::string text = fmt::format(
-      "{}: {}\n  held out: {}\n", e.verdict(), sentence(e),
-      e.whole_records ? "one whole record at a time" : "interleaved blocks, five folds");
-  if (e.filter_hz > 0.0)
-    text += fmt::format("  errors of force and model behind the same filter, -3 dB at {:.4g} Hz\n",
-                        e.filter_hz);
-  text += model_text("base", e.base) + lines_of(e.base.parameters);
-  for (const Step& step : e.steps) {
-    text +=
-        fmt::format("+ {}: {}rrse {:.3f} -> {:.3f}, t {:.1f}\n", step.effect,
-                    step.of == "force_n" ? "held-out " : step.of + ": ",
-                    std::sqrt(step.held_out_before), std::sqrt(step.held_out_after), step.block_t);
-    text += lines_of(step.parameters);
-    for (const JudgedCandidate& c : step.runners_up)
-      text +=
-          fmt::format("    {:<36} {} {:.3f}\n", "runner-up", c.effect, std::sqrt(c.held_out_nmse));
-  }
-  text += model_text("final", e.final) + floor_text(e);
-  text += "what is left: " + describe(e.signature) + "\n";
-  for (const Validated& v : e.validation) {
-    text += fmt::format("never fitted: {}: rrse {:.3f} -> {:.3f}", v.record, v.rrse_before,
-                        v.rrse_after);
-    if (v.has_reference)
-      text += fmt::format("; where there is a reference {:.3f}, the reference {:.3f}",
-                          v.same_rows_rrse, v.reference_rrse);
-    text += fmt::format(" (slip at the start {:.1f} mm, from the first second of force)\n",
-                        1e3 * v.start_m);
-  }
-  for (const std::string& note : e.notes) text += "note: " + note + "\n";
-  return text;
+}  // namespace
+
+app::Explanation conclude(const Explanation& e, RunResult& result) {
+  app::Explanation out = found_in(e);
+  result.evidence = e.evidence;
+  result.notes.insert(result.notes.end(), e.notes.begin(), e.notes.end());
+  put_law(e, result.curve);
+  if (!e.convergence.rows.empty()) result.convergence = e.convergence;
+  put_final(out, result);
+  result.evidence.explanation = to_json(out);
+  return out;
+}
+
+app::Explanation told(const Explanation& e) {
+  RunResult result;
+  result.kind = "rig";
+  return conclude(e, result);
 }
 
 Eigen::VectorXd model_force(const Model& model, const Rows& rows) {
@@ -285,6 +237,7 @@ void gather_evidence(const std::vector<Series>& records, Explanation& e) {
     start_s += static_cast<double>(series.size()) * series.interval_s;
   }
   meter.fill(e.evidence);
+  e.convergence = convergence_of(e.final, records);
   e.signature = meter.signature();
   for (int i = -kLawPoints; i <= kLawPoints; ++i) {
     if (i == 0) continue;

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "app/diagnosis/common/json.hpp"
-#include "app/diagnosis/common/residual.hpp"
+#include "app/diagnosis/common/explanation.hpp"
 #include "app/diagnosis/rig/regression.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app::rig {
-
-/// One effect that was added to a rig's force.
-struct Step {
-  std::string effect;
-  std::string of{"force_n"};       ///< whose error is meant
-  std::vector<std::string> terms;  ///< of the model with it
-  double held_out_before{0.0};     ///< nmse
-  double held_out_after{0.0};
-  double gain{0.0};     ///< beside a constant and a spring, which every comparison carries
-  double block_t{0.0};  ///< mean over deviation of the mean of the blocks' improvements
-  std::vector<Parameter> parameters;
-  std::vector<JudgedCandidate> runners_up;
-};
 
 /// A model of the force: which columns, their coefficients.
 struct Model {
@@ -29,6 +16,9 @@ struct Model {
   std::vector<Regressor> columns;
   Fit fit;
   std::vector<Parameter> parameters;
+  /// Of `parameters`, those that are a coefficient: which one, by its place in the fit.
+  std::vector<std::pair<std::size_t, Eigen::Index>> coefficients;
+  double ridge{0.0};              ///< of the fit
   double skew_s{0.0};             ///< the force is late by this
   Mode path;                      ///< that the force passes before it is measured
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
@@ -39,19 +29,11 @@ struct Model {
   }
 };
 
-/// Errors on a record that was never fitted. The force sets nothing but the slip at the start,
-/// from the first second.
-struct Validated {
-  std::string record;
-  double rrse_before{0.0};
-  double rrse_after{0.0};
-  double start_m{0.0};
-  bool has_reference{false};
-  double reference_rrse{0.0};  ///< over the samples that the reference has
-  double same_rows_rrse{0.0};  ///< of the final model over the same samples
+struct Validated : app::Validated {
   std::vector<PredictedRow> rows;
 };
 
+/// What the search found, with what it is made of.
 struct Explanation {
   std::vector<std::string> records;
   Model base;
@@ -63,6 +45,7 @@ struct Explanation {
   bool whole_records{false};
   Evidence evidence;               ///< but for its JSON
   Signature signature;             ///< of what the final model leaves
+  Convergence convergence;         ///< of the final model's coefficients, over all records
   std::vector<std::string> notes;  ///< how the records were read, a sentence each
   std::string alike;               ///< effects that explain alike, so that none is named; empty
   [[nodiscard]] const char* verdict() const;
@@ -73,10 +56,13 @@ struct Explanation {
   static constexpr double kNegligible = 1e-5;      ///< nmse that no rig is held to
 };
 
-/// As explanation.json holds it.
-[[nodiscard]] std::string to_json(const Explanation& explanation);
-/// For a terminal.
-[[nodiscard]] std::string summarize(const Explanation& explanation);
+/// Puts the final law and the explanation into what identify says of the first record, and judges
+/// both.
+app::Explanation conclude(const Explanation& explanation, RunResult& result);
+/// Judged, as conclude() does.
+[[nodiscard]] app::Explanation told(const Explanation& explanation);
+[[nodiscard]] inline std::string to_json(const Explanation& e) { return to_json(told(e)); }
+[[nodiscard]] inline std::string summarize(const Explanation& e) { return summarize(told(e)); }
 
 /// The force of a model at the rows that were made for it.
 [[nodiscard]] Eigen::VectorXd model_force(const Model& model, const Rows& rows);
@@ -85,7 +71,7 @@ struct Explanation {
 [[nodiscard]] Series seen_by(const Model& model, const Series& series);
 
 /// What the report shows of an explanation, and what is left: fills `evidence` but for its JSON,
-/// and `signature`.
+/// `signature` and `convergence`.
 void gather_evidence(const std::vector<Series>& records, Explanation& explanation);
 
 }  // namespace dampline::app::rig

@@ -2,7 +2,9 @@
 #include "app/diagnosis/truck/explain.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -37,7 +39,7 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
   const auto found = explainer.predict(pass.diagnosis(), out.explanation);
   if (!(found.base_nmse > 0.0))
     throw RunError{fmt::format("{}: too short to validate on", source.path)};
-  return {source.path, found.base_nmse, found.final_nmse};
+  return {source.path, std::sqrt(found.base_nmse), std::sqrt(found.final_nmse)};
 }
 
 }  // namespace
@@ -57,8 +59,9 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   while (true) {
     if (!judge_sums(config, pass.diagnosis(), *explainer, out))
       throw RunError{
-          fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed",
-                      options.source.path, pass.diagnosis().store().count())};
+          fmt::format("{}: too short to explain: {} groups of blocks, some ten are needed. {}",
+                      options.source.path, pass.diagnosis().store().count(),
+                      fmt::join(out.identified.trust_reasons, " "))};
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/diagnosis/common/residual.hpp"
+#include "app/diagnosis/common/explanation.hpp"
 #include "app/record/feed.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
@@ -15,13 +15,6 @@
 
 namespace dampline::app {
 
-/// How well a record that was never fitted is predicted, before and after.
-struct Validated {
-  std::string record;
-  double nmse_before{0.0};
-  double nmse_after{0.0};
-};
-
 /// A truck record explained.
 struct Explained : effect::Judgement {
   effect::Circumstances circumstances;  ///< of the record
@@ -29,9 +22,10 @@ struct Explained : effect::Judgement {
   /// By Effect: what looked like one at first and was none, and is no candidate any more.
   std::array<bool, effect::kEffects> needless{};
   std::vector<Validated> validation;
-  Signature signature;   ///< of what the final model leaves; rms 0: the record was read only once
-  RunResult identified;  ///< what identify says of the same record
-  std::string state;     ///< for state.dls
+  Signature signature;  ///< of what the final model leaves; rms 0: the record was read only once
+  Convergence convergence;  ///< of the final model; where the record was read again
+  RunResult identified;     ///< what identify says of the same record
+  std::string state;        ///< for state.dls
   std::vector<InputFile> inputs;
 };
 

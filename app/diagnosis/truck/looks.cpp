@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/diagnosis/common/evidence.hpp"
+#include "app/diagnosis/truck/law.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
@@ -52,13 +53,21 @@ void read_again(const Config& config, const ExplainOptions& options, const Estim
     for (const auto& surrogate : surrogates)
       if (surrogate) surrogate->take(sample);
   };
-  static_cast<void>(pass_of(config, options.source, again));
+  const TruckPass pass = pass_of(config, options.source, again);
   Evidence& evidence = out.identified.evidence;
   evidence = {};
   meter.fill(evidence);
   evidence.law = truck_law(out.explanation, core.moving_mass_kg,
                            kLawReach * first.diagnosis().velocity_rms_mps());
   out.signature = meter.signature();
+  out.convergence =
+      convergence_of(out.explanation, pass.diagnosis().store(), out.identified.duration_s);
+}
+
+/// A law that no truck has, or one whose floor cannot be had, whatever it leaves.
+void explains_nothing(effect::Explanation& e) {
+  e.conclusion =
+      e.step_count > 0 ? effect::Conclusion::kPartlyExplained : effect::Conclusion::kUnexplained;
 }
 
 }  // namespace
@@ -78,14 +87,18 @@ void look_again(const Config& config, const ExplainOptions& options, const Truck
       surrogate_config(core, out.explanation, noise_of_record(first, noise, core.screen.step_mps2));
   const Surrogates surrogates = surrogates_of(core, declared, out.explanation);
   read_again(config, options, core, first, surrogates, out);
-  if (!surrogates[0]) return;
+  if (!surrogates[0]) {
+    explains_nothing(out.explanation);
+    return;
+  }
   const std::size_t steps = out.explanation.step_count;
   const auto conclusion = out.explanation.conclusion;
   const effect::Diagnosis* const second = &surrogates[1]->finish();
   const bool remembers = surrogates[1]->remembers();
-  explainer.apply_floor(
+  const bool judged = explainer.apply_floor(
       {surrogates[0]->finish(), remembers ? nullptr : second, remembers ? second : nullptr},
       out.identified.faults.impacts, out.explanation);
+  if (!judged && steps > 0) explains_nothing(out.explanation);
   if (out.withheld || out.drifts) out.explanation.conclusion = conclusion;
   // A surrogate that shows the same effect has taken it back: what is left is the base's.
   if (out.explanation.step_count == steps) return;

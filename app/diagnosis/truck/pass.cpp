@@ -103,7 +103,8 @@ effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effe
   out.stiffness_per_s2 = e.final.theta[effect::ModelFit::kStiffness];
   const double mass_kg = e.final_stiffness_npm.value / out.stiffness_per_s2;
   out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
-  if (e.base_count > 0) out.viscous_per_s = e.final.theta[effect::ModelFit::kFirstEffect];
+  if (e.base_count > 0)
+    out.viscous_per_s = std::max(e.final.theta[effect::ModelFit::kFirstEffect], 0.0);
   out.anti_alias_hz = core.anti_alias.corner_hz;
   out.noise_mps2 = noise_mps2;
   out.step_mps2 = core.screen.step_mps2;

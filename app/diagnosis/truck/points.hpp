@@ -54,8 +54,4 @@ class TruckPoints {
   std::size_t held_count_{0};
 };
 
-/// The damping force in steady sliding, undeflected, over velocities to `reach_mps` on either side.
-[[nodiscard]] std::vector<LawRow> truck_law(const effect::Explanation& explanation,
-                                            double moving_mass_kg, double reach_mps);
-
 }  // namespace dampline::app

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -104,6 +105,8 @@ class GramStore {
   [[nodiscard]] std::size_t parts() const noexcept { return count() * kScales; }
   /// One matrix of another store's entries, with what belongs to it.
   void copy_part(const GramStore& from, std::size_t part) noexcept;
+  /// Forgets all but the oldest entries; of a copy that takes no more rows.
+  void keep_oldest(std::size_t entries) noexcept { count_ = std::min(count_, entries); }
 
  private:
   static constexpr std::size_t kSlots = 3;

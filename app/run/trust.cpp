@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "app/run/trust.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "app/text/format.hpp"
+
+namespace dampline::app {
+namespace {
+
+constexpr std::array<const char*, 4> kNames{"trusted", "model_incomplete", "data_faulty",
+                                            "not_identified"};
+
+// What a complete model of a truck leaves is made at the reversals, where the velocity's error
+// decides on the sign of friction: about the square of the share of time spent within the law's
+// width, 0.8 to 1.8 times on clean records.
+constexpr double kSmallMisfit = 0.005;
+constexpr double kMisfitOfSticking = 3.0;
+constexpr double kWidestLawMps = 6e-3;  // a wider one is no error of the velocity
+constexpr double kStickMps = 2e-3;      // below it a truck counts as sticking
+constexpr double kRigMisfit = 0.09;     // rrse 0.3
+constexpr double kNothingFitted = 0.8;  // of the variance, left
+constexpr double kSure = 3.0;           // deviations
+constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
+constexpr double kViscousSigmas = 5.0;
+constexpr double kLeastFriction = 0.01;    // of the weight
+constexpr double kLeastShakingMps2 = 0.7;  // rms of the wheelsets
+
+using Reasons = std::vector<std::pair<Trust, std::string>>;
+
+const Parameter* find(const RunResult& result, const char* name) {
+  const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
+                                  [&](const Parameter& p) { return p.name == name; });
+  return found == result.parameters.end() ? nullptr : &*found;
+}
+
+bool is_truck(const RunResult& result) { return result.kind == "truck"; }
+
+void judge_data(const Explaining* explaining, const RunResult& result, Reasons& out) {
+  const DataFaults& faults = result.faults;
+  std::string names;
+  for (const FaultFinding& f : faults.list)
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", f.name, f.channel);
+  if (faults.lasting || (explaining != nullptr && explaining->withheld))
+    out.emplace_back(Trust::kDataFaulty, fmt::format("The data have faults: {}.", names));
+  const Parameter* const coulomb = find(result, "coulomb");
+  const std::optional<Magnitudes>& seen = result.magnitudes;
+  if (coulomb == nullptr || !seen || !(seen->wheelset_mps2 > 0.0)) return;
+  const double share = coulomb->value / seen->weight_n;
+  if (share < 0.0 || share > kLeastFriction || seen->wheelset_mps2 > kLeastShakingMps2) return;
+  out.emplace_back(
+      Trust::kDataFaulty,
+      fmt::format("The wheelsets shake by {:.2g} m/s^2 rms and friction is {:.2g} % of the weight, "
+                  "a tenth of what trucks have: are the accelerations in g? They are taken as "
+                  "m/s^2; forces of accelerations in g come out 9.8 times too small.",
+                  seen->wheelset_mps2, 100.0 * share));
+}
+
+struct Positive {
+  const char* name;
+  const char* reason;  ///< where it is less than nothing
+};
+constexpr std::array kPositive{Positive{"coulomb", "Dry friction comes out negative"},
+                               Positive{"coulomb_positive", "Dry friction comes out negative"},
+                               Positive{"coulomb_negative", "Dry friction comes out negative"},
+                               Positive{"stiffness", "The spring comes out negative"},
+                               Positive{"moving_mass", "The mass comes out negative"}};
+
+std::string what_to_check(const RunResult& result) {
+  return is_truck(result) ? ": are channels exchanged, or in another unit or direction?"
+                          : ": is the force of the other sign?";
+}
+
+void judge_numbers(const RunResult& result, Reasons& out) {
+  for (const Positive& p : kPositive) {
+    const Parameter* const found = find(result, p.name);
+    if (found == nullptr) continue;
+    // A rig's spring or mass that may be none is a finding; a truck has both.
+    const bool negative = is_truck(result)
+                              ? !(found->value > 0.0)
+                              : found->value < -kSure * found->std || !std::isfinite(found->value);
+    if (negative) {
+      out.emplace_back(Trust::kNotIdentified, p.reason + what_to_check(result));
+      return;
+    }
+    if (is_truck(result) && !(found->value > kSure * found->std)) {
+      out.emplace_back(Trust::kNotIdentified,
+                       fmt::format("The {} cannot be told from nothing: it is smaller than three "
+                                   "times its deviation.",
+                                   p.name));
+      return;
+    }
+  }
+}
+
+std::optional<double> left_of(const Fit& fit) {
+  return fit.held_out_nmse ? fit.held_out_nmse : fit.nmse;
+}
+
+/// What a complete model may leave where nobody has worked it out.
+double most_left(const RunResult& result) {
+  if (!is_truck(result)) return kRigMisfit;
+  const double width_mps = std::min(result.fit.law_width_mps.value_or(kStickMps), kWidestLawMps);
+  const double within = result.stick_share.value_or(0.0) * width_mps / kStickMps;
+  return std::max(kSmallMisfit, kMisfitOfSticking * within * within);
+}
+
+void judge_fit(const Explaining* explaining, const RunResult& result, Reasons& out) {
+  const std::optional<double> left = left_of(result.fit);
+  if (!left || !std::isfinite(*left)) return;
+  if (!(*left < kNothingFitted)) {
+    out.emplace_back(Trust::kNotIdentified,
+                     fmt::format("The model explains next to nothing: {:.0f} % of the variance is "
+                                 "left.",
+                                 100.0 * *left));
+    return;
+  }
+  if (explaining != nullptr && explaining->incomplete) {
+    out.emplace_back(Trust::kModelIncomplete,
+                     fmt::format("Something is left that the model does not explain: {:.2g} % of "
+                                 "the variance, more than sensors and rounding make.",
+                                 100.0 * *left));
+    return;
+  }
+  if (explaining != nullptr && explaining->judged) return;
+  const double most = most_left(result);
+  if (*left <= most) return;
+  out.emplace_back(
+      Trust::kModelIncomplete,
+      fmt::format("The model does not fit: it leaves {:.2g} % of the variance, a complete one at "
+                  "most {:.2g} %.{}",
+                  100.0 * *left, 100.0 * most,
+                  explaining == nullptr ? " `dampline explain` finds out what it lacks." : ""));
+}
+
+void judge_terms(const RunResult& result, Reasons& out) {
+  if (!result.lacking.empty())
+    out.emplace_back(Trust::kModelIncomplete,
+                     fmt::format("The model lacks {}: the law with it stands in the explanation.",
+                                 fmt::join(result.lacking, ", ")));
+  else if (result.faults.drift)
+    out.emplace_back(
+        Trust::kModelIncomplete,
+        fmt::format("A parameter is not constant: {} changed by {:+.1f} %. `dampline "
+                    "explain` tells when.",
+                    result.faults.drift->parameter, result.faults.drift->change_percent.value));
+  const std::optional<ViscousPart>& v = result.fit.viscous;
+  if (v && std::abs(v->share) > kViscousShare && std::abs(v->sigmas) > kViscousSigmas)
+    out.emplace_back(Trust::kModelIncomplete,
+                     fmt::format("The model lacks something that depends on speed, {:.0f} % of the "
+                                 "dry friction: `dampline explain` finds out what.",
+                                 100.0 * std::abs(v->share)));
+}
+
+std::string words(const Parameter& p, double scale, const char* unit) {
+  const QuantityText text = format_quantity(scale * p.value, scale * p.std);
+  return fmt::format("{}{}{}{}{}", text.value, text.std.empty() ? "" : " ± ", text.std,
+                     *unit == '\0' ? "" : " ", unit);
+}
+
+std::string truck_numbers(const RunResult& result) {
+  const Parameter* const coulomb = find(result, "coulomb");
+  const Parameter* const stiffness = find(result, "stiffness");
+  if (coulomb == nullptr || stiffness == nullptr) return "";
+  return fmt::format(
+      "Dry friction (Coulomb level) of {} and a spring of {}, identified from {} of record.",
+      words(*coulomb, 1.0, "N"), words(*stiffness, 1e-6, "MN/m"),
+      format_duration(result.duration_s));
+}
+
+std::string rig_numbers(const RunResult& result) {
+  std::string text;
+  for (const Parameter& p : result.parameters)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", p.name, words(p, 1.0, p.unit.c_str()));
+  return fmt::format("{}: the model fits. Rrse {:.3f}, from {} of record.", text,
+                     result.fit.rrse.value_or(0.0), format_duration(result.duration_s));
+}
+
+constexpr std::array<const char*, 4> kLeads{
+    "", "The model does not fit this record, so no number is stated here. ",
+    "The data are faulty, so no number is stated here. ",
+    "Nothing could be identified that can be stated here. "};
+
+}  // namespace
+
+const char* name_of(Trust trust) noexcept { return kNames[static_cast<std::size_t>(trust)]; }
+
+Trust trust_of(const std::string& name) noexcept {
+  const auto* const found = std::find(kNames.begin(), kNames.end(), name);
+  return found == kNames.end() ? Trust::kNotIdentified : static_cast<Trust>(found - kNames.begin());
+}
+
+void judge_trust(const Explaining* explaining, RunResult& result) {
+  Reasons reasons;
+  judge_data(explaining, result, reasons);
+  judge_numbers(result, reasons);
+  judge_fit(explaining, result, reasons);
+  if (explaining == nullptr) judge_terms(result, reasons);
+  result.trust = Trust::kTrusted;
+  result.trust_reasons.clear();
+  result.headline = is_truck(result) ? truck_numbers(result) : rig_numbers(result);
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  // What a wrong record leaves says nothing of the model.
+  if (!reasons.empty() && reasons.front().first > Trust::kModelIncomplete)
+    std::erase_if(reasons, [](const auto& r) { return r.first == Trust::kModelIncomplete; });
+  for (auto& [trust, reason] : reasons) result.trust_reasons.push_back(std::move(reason));
+  if (reasons.empty()) return;
+  result.trust = reasons.front().first;
+  result.headline = kLeads[static_cast<std::size_t>(result.trust)] + result.trust_reasons.front();
+}
+
+}  // namespace dampline::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/run/result.hpp"
+
+namespace dampline::app {
+
+/// As parameters.json, explanation.json and the terminal call it.
+[[nodiscard]] const char* name_of(Trust trust) noexcept;
+/// The value of that name; not_identified where there is none.
+[[nodiscard]] Trust trust_of(const std::string& name) noexcept;
+
+/// What an explanation knows of the model, beside what the numbers themselves tell.
+struct Explaining {
+  bool judged{false};      ///< what a complete model would leave is known
+  bool incomplete{false};  ///< something real is left
+  bool withheld{false};    ///< faults of the data forbid to name an effect
+};
+
+/// The one rule, for trucks and rigs, files and live runs: sets trust and its reasons, the gravest
+/// first, and the headline, which states numbers only where they are trusted. Without an
+/// explanation (null) the fit alone is judged.
+void judge_trust(const Explaining* explaining, RunResult& result);
+
+}  // namespace dampline::app
