@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -106,7 +105,7 @@ class GramStore {
   /// One matrix of another store's entries, with what belongs to it.
   void copy_part(const GramStore& from, std::size_t part) noexcept;
   /// Forgets all but the oldest entries; of a copy that takes no more rows.
-  void keep_oldest(std::size_t entries) noexcept { count_ = std::min(count_, entries); }
+  void keep_oldest(std::size_t entries) noexcept { entries_.keep_oldest(entries); }
 
  private:
   static constexpr std::size_t kSlots = 3;
