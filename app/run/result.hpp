@@ -154,13 +154,12 @@ struct DataFaults {
 /// A named result with its unit; names as in parameters.json ("coulomb", "coulomb_positive", ...).
 struct Parameter {
   std::string name;
-  double value {
-    0.0  /// Another one that it is most correlated with in this record; 0: not worked out.
-        std::string twin{};
-    double correlation{0.0};
-  };
+  double value{0.0};
   double std{0.0};
   std::string unit;
+  /// Another one that it is most correlated with in this record; 0: not worked out.
+  std::string twin{};
+  double correlation{0.0};
 };
 
 /// Otherwise only what the two do together is known.
