@@ -188,6 +188,7 @@ Config parse_config(std::string_view text, const std::string& origin) {
     const toml::table file = toml::parse(text, origin);
     Loader{config, origin}.read_file(file);
     config.input.sample_rate_is_set = file["input"]["sample_rate_hz"].is_number();
+    config.model.base_is_set = !!file["model"]["base"];
   } catch (const toml::parse_error& error) {
     throw UsageError{
         fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description())};

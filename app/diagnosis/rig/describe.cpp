@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What the search found, in parameters with units.
+// What was found, in parameters with units.
+#include "app/diagnosis/rig/describe.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
-#include "app/diagnosis/rig/search.hpp"
+#include "app/diagnosis/rig/bank.hpp"
+#include "app/diagnosis/rig/thresholds.hpp"
 
 namespace dampline::app::rig {
 namespace {
+
+using Of = Place::Of;
 
 /// What the first coefficient of an effect in its smallest form is.
 struct First {
@@ -31,120 +39,300 @@ constexpr std::array kFirst{
     First{"unmodelled_mode", "unmodelled_mode_mass", "kg"},
     First{"progressive_friction", "progressive_friction_slope", "N/m"}};
 
-/// The length or speed of an effect in its smallest form; none where it has no name. Its deviation
-/// is what the grid leaves open.
-Parameter place_parameter(const Candidate& c, const Scale& scale) {
-  constexpr double kMemoryPlace = 0.1;  // of a length known to one step of its grid
-  constexpr double kSpeedPlace = 0.3;
-  constexpr double kGapPlace = 0.03;  // of the motion's size
-  const double place = c.place;
-  if (c.effect == "stribeck") return {"stribeck_speed", place, kSpeedPlace * place, "m/s"};
-  if (c.effect == "bump_stop") return {"bump_stop_gap", place, kGapPlace * scale.deflection_m, "m"};
-  if (!is_memory(c.effect)) return {};
-  return {c.effect + "_travel", 2.0 * place, kMemoryPlace * (2.0 * place), "m"};
+/// Figures of one model: each a value and its slope over all that was fitted together.
+class Figures {
+ public:
+  Figures(const Joint& joint, std::vector<std::string>& notes) : joint_{joint}, notes_{notes} {}
+
+  [[nodiscard]] Eigen::VectorXd slope(Eigen::Index at, double times = 1.0) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(joint_.size());
+    if (at >= 0 && at < out.size()) out[at] = times;
+    return out;
+  }
+
+  /// Its deviation, no less than half of what the halves of the record differ by where that is
+  /// certain.
+  Parameter take(const std::string& name, double value, const char* unit,
+                 const Eigen::VectorXd& slope) {
+    Parameter out{name, value, std::sqrt(std::max(slope.dot(joint_.covariance * slope), 0.0)),
+                  unit};
+    const double apart = 0.5 * std::abs(slope.dot(joint_.half_difference));
+    if (apart > kHalvesApart * out.std && out.std > 0.0) {
+      notes_.push_back(fmt::format(
+          "{} is not the same in both halves of the record, by {:.1f} deviations: its deviation "
+          "was widened to hold both.",
+          name, apart / out.std));
+      out.std = apart;
+    }
+    taken_.emplace_back(name, slope);
+    return out;
+  }
+
+  /// Puts to each parameter the other that it is most correlated with.
+  void put_twins(std::vector<Parameter>& parameters) const {
+    for (Parameter& p : parameters) {
+      const auto& slope = std::find_if(taken_.begin(), taken_.end(),
+                                       [&](const auto& t) { return t.first == p.name; });
+      if (slope == taken_.end()) continue;
+      for (const auto& [other, their] : taken_) {
+        const double value = correlation(slope->second, their);
+        if (other == p.name || std::abs(value) <= std::abs(p.correlation)) continue;
+        p.twin = other;
+        p.correlation = value;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    const auto& c = joint_.covariance;
+    const double size = std::sqrt(a.dot(c * a) * b.dot(c * b));
+    return size > 0.0 ? a.dot(c * b) / size : 0.0;
+  }
+
+  const Joint& joint_;
+  std::vector<std::string>& notes_;
+  std::vector<std::pair<std::string, Eigen::VectorXd>> taken_;
+};
+
+const char* name_of(const Regressor& column, bool is_friction) {
+  switch (column.kind) {
+    case Kind::kInertia:
+    case Kind::kAcceleration:
+      return "moving_mass";
+    case Kind::kDeflection:
+      return "stiffness";
+    case Kind::kVelocity:
+      return "viscous";
+    case Kind::kOne:
+      return "offset";
+    default:
+      return is_friction ? "coulomb" : nullptr;
+  }
 }
 
-}  // namespace
+const char* unit_of(std::string_view name) {
+  if (name == "moving_mass") return "kg";
+  if (name == "stiffness") return "N/m";
+  return name == "viscous" ? "N s/m" : "N";
+}
 
-void Search::describe(Model& model, const Judged& judged) const {
-  constexpr double kWidthPlace = 0.0132;  // of a width: the deviation within the finest grid
-  model.terms = terms();
-  model.fit = judged.fit;
-  model.ridge = ridge();
-  for (const Eigen::Index i : judged.set) {
-    const Regressor& column = library_.at(i);
-    const auto add = [&](const char* name, const char* unit) {
-      const Estimate e = judged.of(i);
-      model.coefficients.emplace_back(model.parameters.size(), place_of(judged.set, i));
-      model.parameters.push_back({name, e.value, e.std, unit});
-    };
-    model.columns.push_back(column);
-    if (column.kind == Kind::kInertia || column.kind == Kind::kAcceleration)
-      add("moving_mass", "kg");
-    else if (i == library_.spring)
-      add("stiffness", "N/m");
-    else if (column.kind == Kind::kVelocity)
-      add("viscous", "N s/m");
-    else if (column.kind == Kind::kOne)
-      add("offset", "N");
-    else if (is_friction(i, judged))
-      add("coulomb", "N");
-    if (is_smooth(column, scale_))
-      model.parameters.push_back({"law_width", column.a, kWidthPlace * column.a, "m/s"});
+/// One model on its way to its parameters.
+struct Writing {
+  const State& s;
+  const Joint& joint;
+  Model& model;
+  Figures figures;
+
+  [[nodiscard]] double theta(std::size_t i) const {
+    return model.fit.theta[static_cast<Eigen::Index>(i)];
+  }
+  Parameter coefficient(const std::string& name, std::size_t i, const char* unit,
+                        double times = 1.0) {
+    return figures.take(name, times * theta(i), unit,
+                        figures.slope(static_cast<Eigen::Index>(i), times));
+  }
+  Parameter place(const std::string& name, Eigen::Index at, double value, const char* unit,
+                  double times = 1.0) {
+    return figures.take(name, times * value, unit, figures.slope(at, times));
+  }
+};
+
+void write_base(Writing& w) {
+  for (std::size_t i = 0; i < w.joint.coefficients; ++i) {
+    const Regressor& column = w.model.columns[i];
+    const bool friction = static_cast<int>(i) == w.model.friction;
+    if (column.time != Regressor::Time::kSteady) continue;
+    if (const char* name = name_of(column, friction)) {
+      w.model.coefficients.emplace_back(w.model.parameters.size(), static_cast<Eigen::Index>(i));
+      w.model.parameters.push_back(w.coefficient(name, i, unit_of(name)));
+    }
+    if (friction && is_smooth(column, w.s.scale))
+      w.model.parameters.push_back(
+          w.place("law_width", w.joint.of_column(i, Of::kA), column.a, "m/s"));
   }
 }
 
 /// The parameters of an effect in its smallest form, from its first coefficient.
-void Search::describe_small(Chosen& c, const Estimate& first) const {
+void write_small(Writing& w, std::size_t at, Step& step) {
   const auto* const what = std::find_if(kFirst.begin(), kFirst.end(),
-                                        [&](const First& f) { return f.effect == c.step.effect; });
+                                        [&](const First& f) { return f.effect == step.effect; });
   if (what == kFirst.end())
-    c.step.parameters.push_back({c.step.effect, first.value, first.std, "N s/m"});
+    step.parameters.push_back(w.coefficient(step.effect, at, "N s/m"));
   else
-    c.step.parameters.push_back(
-        {what->name, what->times * first.value, what->times * first.std, what->unit});
-  const Parameter place = place_parameter(c.candidate, scale_);
-  if (!place.name.empty()) c.step.parameters.push_back(place);
+    step.parameters.push_back(w.coefficient(what->name, at, what->unit, what->times));
+  const Regressor& column = w.model.columns[at];
+  if (step.effect == "stribeck")
+    step.parameters.push_back(
+        w.place("stribeck_speed", w.joint.of_column(at, Of::kB), column.b, "m/s"));
+  if (step.effect == "bump_stop")
+    step.parameters.push_back(
+        w.place("bump_stop_gap", w.joint.of_column(at, Of::kA), column.a, "m"));
+  if (is_memory(step.effect))
+    step.parameters.push_back(
+        w.place(step.effect + "_travel", w.joint.of_column(at, Of::kA), column.a, "m", 2.0));
+  if (column.kind != Kind::kAttached) return;
+  step.parameters.push_back(
+      w.place("unmodelled_mode_frequency", w.joint.of_column(at, Of::kA), column.a, "Hz"));
+  step.parameters.push_back(
+      w.place("unmodelled_mode_damping", w.joint.of_column(at, Of::kB), column.b, ""));
 }
 
-void Search::describe_sides(Chosen& c, const Judged& now) const {
-  const auto place = [&](Kind kind) {
-    return std::find_if(now.set.begin(), now.set.end(),
-                        [&](Eigen::Index i) { return library_.at(i).kind == kind; }) -
-           now.set.begin();
+void write_sides(Writing& w, Step& step) {
+  const auto at = [&](Kind kind) {
+    return static_cast<std::size_t>(
+        std::find_if(w.model.columns.begin(), w.model.columns.end(),
+                     [&](const Regressor& c) { return c.kind == kind; }) -
+        w.model.columns.begin());
   };
-  const auto odd = place(Kind::kVelocity);
-  const auto even = place(Kind::kSpeed);
-  const auto& covariance = now.fit.covariance;
-  const double squares = covariance(odd, odd) + covariance(even, even);
-  const double both = 2.0 * covariance(odd, even);
-  const double level = now.fit.theta[odd];
-  const double difference = now.fit.theta[even];
-  c.step.parameters.push_back(
-      {"viscous_positive", level + difference, std::sqrt(std::max(squares + both, 0.0)), "N s/m"});
-  c.step.parameters.push_back(
-      {"viscous_negative", level - difference, std::sqrt(std::max(squares - both, 0.0)), "N s/m"});
+  const std::size_t odd = at(Kind::kVelocity);
+  const std::size_t even = at(Kind::kSpeed);
+  for (const double side : {1.0, -1.0})
+    step.parameters.push_back(
+        w.figures.take(side > 0.0 ? "viscous_positive" : "viscous_negative",
+                       w.theta(odd) + side * w.theta(even), "N s/m",
+                       w.figures.slope(static_cast<Eigen::Index>(odd)) +
+                           w.figures.slope(static_cast<Eigen::Index>(even), side)));
 }
 
 /// The change over the record, of the mean or of the value before it.
-void Search::describe_drift(Chosen& c, const Judged& now) const {
-  const Regressor& drifting = library_.at(c.candidate.columns.front());
-  const Estimate change = now.of(c.candidate.columns.front());
-  Parameter& out = c.step.parameters.front();
+void write_drift(Writing& w, std::size_t at, Step& step) {
+  const Regressor& drifting = w.model.columns[at];
+  Parameter& out = step.parameters.front();
   if (drifting.kind == Kind::kOne) {
-    out = {out.name, change.value, change.std, "N"};
+    out = w.coefficient(out.name, at, "N");
     return;
   }
-  const bool linear = drifting.kind == Kind::kVelocity || drifting.kind == Kind::kDeflection;
-  double of = 0.0;
-  for (const Eigen::Index i : now.set) {
-    const Regressor& steady = library_.at(i);
-    const bool same = steady.kind == drifting.kind || (!linear && is_friction(i, now));
-    if (same && steady.time == Regressor::Time::kSteady) of = now.of(i).value;
+  for (std::size_t i = 0; i < w.joint.coefficients; ++i) {
+    const Regressor& steady = w.model.columns[i];
+    if (steady.time != Regressor::Time::kSteady || steady.kind != drifting.kind ||
+        steady.a != drifting.a)
+      continue;
+    const double of = w.theta(i);
+    const double change = w.theta(at);
+    if (of == 0.0) return;
+    out = w.figures.take(
+        out.name, 100.0 * change / of, "%",
+        w.figures.slope(static_cast<Eigen::Index>(at), 100.0 / of) +
+            w.figures.slope(static_cast<Eigen::Index>(i), -100.0 * change / (of * of)));
+    return;
   }
-  if (of == 0.0) return;
-  const double percent = 100.0 / std::abs(of);
-  out.value = percent * std::copysign(1.0, of) * change.value;
-  out.std = percent * change.std;
 }
 
-void Search::describe_steps(const Judged& now) {
-  for (Chosen& c : chosen_) {
-    if (c.step.effect == "time_skew" || c.step.effect == "impulsive_input" ||
-        c.candidate.columns.empty())
-      continue;
-    const Eigen::Index column = c.candidate.columns.front();
-    if (c.step.effect == "time_drift")
-      describe_drift(c, now);
-    else if (library_.at(column).kind == Kind::kBoucWen)
-      describe_bouc_wen(c, now.of(column));
-    else if (c.ridge > 0.0)
-      describe_bank(c, now);
-    else if (c.step.effect == "asymmetric_viscous")
-      describe_sides(c, now);
-    else
-      describe_small(c, now.of(column));
+/// The change of a friction with memory: of one step or slope, or the range of several.
+void write_change(Writing& w, Step& step) {
+  Eigen::Index low = -1;
+  Eigen::Index high = -1;
+  double level = 0.0;
+  double least = 0.0;
+  double most = 0.0;
+  for (Eigen::Index k = 0; k < w.joint.changes.size(); ++k) {
+    level += w.joint.changes[k];
+    if (level < least) std::tie(least, low) = std::pair{level, k};
+    if (level > most) std::tie(most, high) = std::pair{level, k};
   }
+  Eigen::VectorXd slope = w.figures.slope(-1);
+  for (Eigen::Index k = 0; k < w.joint.changes.size(); ++k)
+    slope +=
+        w.figures.slope(w.joint.of_change(static_cast<std::size_t>(k)),
+                        100.0 * (static_cast<double>(k <= high) - static_cast<double>(k <= low)));
+  const double size = w.joint.changes.size() == 1 ? w.joint.changes[0] : most - least;
+  if (w.joint.changes.size() == 1) slope = w.figures.slope(w.joint.of_change(0), 100.0);
+  step.parameters.front() = w.figures.take(step.parameters.front().name, 100.0 * size, "%", slope);
+}
+
+void write_bouc_wen(Writing& w, std::size_t at, Step& step) {
+  const Regressor& law = w.model.columns[at];
+  const Eigen::Index travel = w.joint.of_column(at, Of::kA);
+  const Eigen::Index shape = w.joint.of_column(at, Of::kB);
+  const double stiffness = w.theta(at);
+  const double slips = 1.0 + law.b;
+  const double slip_m = bouc_wen_slip_m(law.a, law.b);
+  const double shape_std = shape < 0 ? 0.0 : std::sqrt(w.joint.covariance(shape, shape));
+  auto& out = step.parameters;
+  if (slips > 2.0 * shape_std && slip_m > 0.0)
+    out.push_back(w.figures.take("presliding_hysteresis_force", stiffness * slip_m, "N",
+                                 w.figures.slope(static_cast<Eigen::Index>(at), slip_m) +
+                                     w.figures.slope(travel, stiffness / slips) +
+                                     w.figures.slope(shape, -stiffness * slip_m / slips)));
+  out.push_back(w.coefficient("presliding_hysteresis_stiffness", at, "N/m"));
+  out.push_back(w.place("presliding_hysteresis_travel", travel, law.a, "m"));
+  out.push_back(w.place("presliding_hysteresis_shape", shape, law.b, ""));
+}
+
+/// The deviation of each figure by the jackknife over the folds.
+void write_bank(Writing& w, Step& step) {
+  constexpr double kTravelPlace = 0.07;  // a step of 1.15, evenly spread
+  const double longest_m = longest_of(w.s.bank);
+  const std::vector<Regressor> columns{
+      w.model.columns.begin(),
+      w.model.columns.begin() + static_cast<std::ptrdiff_t>(w.joint.coefficients)};
+  const BankFigures all = read_bank(columns, w.model.fit.theta, longest_m);
+  std::vector<BankFigures> left;
+  for (const Eigen::VectorXd& theta : w.model.fit.left_out)
+    left.push_back(read_bank(columns, theta, longest_m));
+  const auto add = [&](const std::string& name, double BankFigures::*value, const char* unit) {
+    std::vector<double> values;
+    values.reserve(left.size());
+    for (const BankFigures& r : left) values.push_back(r.*value);
+    step.parameters.push_back({name, all.*value, jackknife_std(values), unit});
+  };
+  const std::string& effect = step.effect;
+  add(effect + "_force_positive", &BankFigures::level_up_n, "N");
+  add(effect + "_force_negative", &BankFigures::level_down_n, "N");
+  add(effect == "backlash" ? "backlash_gap" : effect + "_free_play", &BankFigures::free_play_m,
+      "m");
+  add(effect + "_contact_stiffness", &BankFigures::stiffness_npm, "N/m");
+  int number = 0;
+  for (const BankElement& e : w.s.bank)
+    step.parameters.push_back({effect + "_travel_" + std::to_string(++number), 2.0 * e.travel_m,
+                               kTravelPlace * 2.0 * e.travel_m, "m"});
+}
+
+/// Lateness and modes before the sensor: figures of the records.
+bool write_of_records(Writing& w, Step& step) {
+  if (step.effect == "time_skew") {
+    step.parameters = {
+        w.place("time_skew", w.joint.of_records(Of::kSkew), w.model.skew_s, "ms", 1e3)};
+    return true;
+  }
+  if (step.effect != "unmodelled_mode" || !(w.model.path.hz > 0.0)) return false;
+  step.parameters = {w.place("unmodelled_mode_frequency", w.joint.of_records(Of::kFrequency),
+                             w.model.path.hz, "Hz"),
+                     w.place("unmodelled_mode_damping", w.joint.of_records(Of::kDamping),
+                             w.model.path.damping, "")};
+  return true;
+}
+
+void write_step(Writing& w, const ColumnSet& columns, Chosen& c) {
+  if (c.step.effect == "impulsive_input" || write_of_records(w, c.step)) return;
+  if (!c.changes.empty()) return write_change(w, c.step);
+  if (c.candidate.columns.empty()) return;
+  const auto at = static_cast<std::size_t>(place_of(columns, c.candidate.columns.front()));
+  if (c.step.effect == "time_drift") return write_drift(w, at, c.step);
+  c.step.parameters.clear();
+  if (w.model.columns[at].kind == Kind::kBoucWen) return write_bouc_wen(w, at, c.step);
+  if (c.ridge > 0.0) return write_bank(w, c.step);
+  if (c.step.effect == "asymmetric_viscous") return write_sides(w, c.step);
+  write_small(w, at, c.step);
+}
+
+}  // namespace
+
+void describe(const State& s, const Joint& joint, Model& model, std::vector<Chosen>& steps,
+              const ColumnSet& columns, std::vector<std::string>& notes) {
+  if (!joint.ok) return;
+  Writing w{s, joint, model, Figures{joint, notes}};
+  write_base(w);
+  for (Chosen& c : steps) write_step(w, columns, c);
+  for (const Chosen& c : steps)
+    for (const Parameter& p : c.step.parameters) {
+      const auto same = [&](const Parameter& other) { return other.name == p.name; };
+      if (std::none_of(model.parameters.begin(), model.parameters.end(), same))
+        model.parameters.push_back(p);
+    }
+  w.figures.put_twins(model.parameters);
+  for (Chosen& c : steps) w.figures.put_twins(c.step.parameters);
 }
 
 }  // namespace dampline::app::rig

@@ -10,15 +10,17 @@
 
 #include "app/diagnosis/rig/explanation.hpp"
 #include "app/diagnosis/rig/gain.hpp"
+#include "app/diagnosis/rig/library.hpp"
 #include "app/diagnosis/rig/regression.hpp"
-#include "app/diagnosis/rig/search.hpp"
+#include "app/diagnosis/rig/steps.hpp"
+#include "app/diagnosis/rig/thresholds.hpp"
 #include "app/error.hpp"
 
 namespace dampline::app::rig {
 namespace {
 
-constexpr double kDominantMass = 0.5;  // of the error without an inertia, that it takes
-constexpr double kSignWidths = 3.0;    // times the width that an error of the velocity makes
+constexpr double kSignWidths = 3.0;  // times the width that an error of the velocity makes
+constexpr double kWidthRatio = 1.5;  // from one way to write friction to the next
 
 constexpr double kStartS = 1.0;  // of measured force that may set the slip at the start
 constexpr int kStarts = 40;
@@ -126,16 +128,61 @@ struct Explained {
   Explanation explanation;
 };
 
-Explained search(const Config& config, const ExplainOptions& options) {
+/// Friction or damping, or both: what the records bear out beside a spring that may bend.
+std::vector<std::string> base_of(const std::vector<Series>& records, bool inertia) {
+  const Scale scale = scale_of(records);
+  std::vector<Regressor> columns{{Kind::kOne, 0.0, 0.0},
+                                 {Kind::kDeflection, 0.0, 0.0},
+                                 {Kind::kCube, 0.0, 0.0},
+                                 {Kind::kVelocity, 0.0, 0.0}};
+  ColumnSet beside{0, 1, 2};
+  if (inertia) {
+    beside.push_back(static_cast<Eigen::Index>(columns.size()));
+    columns.push_back({Kind::kInertia, 0.0, 0.0});
+  }
+  const auto first = static_cast<Eigen::Index>(columns.size());
+  const double narrow_mps = kSignWidths * scale.sign_mps;
+  columns.push_back({Kind::kSign, narrow_mps, 0.0});
+  for (const double a : ratios(narrow_mps, kWidestFriction * scale.velocity_mps, kWidthRatio))
+    columns.push_back({Kind::kSign, a, 0.0});
+  const Regression evidence{columns, records};
+  const auto best = [&](const ColumnSet& damping) {
+    Fit out;
+    for (Eigen::Index w = first; w < static_cast<Eigen::Index>(columns.size()); ++w) {
+      const ColumnSet more = joined({w}, damping);
+      Fit fit = evidence.fit(joined(more, beside), 0.0);
+      if (fit.beats(out) && fit.theta.head(static_cast<Eigen::Index>(more.size())).minCoeff() > 0.0)
+        out = std::move(fit);
+    }
+    return out;
+  };
+  const Fit damped = evidence.fit(joined({3}, beside), 0.0);
+  const Fit rubbed = best({});
+  const Fit both = best({3});
+  const bool damps = damped.ok && damped.theta[0] > 0.0;
+  const Fit& alone = damps && !rubbed.beats(damped) ? damped : rubbed;
+  if (both.ok && alone.ok && both.held_out_nmse < kBothNeeded * alone.held_out_nmse &&
+      block_t(alone, both) > kLaterSignificant)
+    return {"coulomb", "viscous"};
+  return {&alone == &damped ? "viscous" : "coulomb"};
+}
+
+Explained look_for(Config config, const ExplainOptions& options) {
   Explained out{config, read_records(config, options), {}, {}};
   for (const Series& record : out.records) out.gains.push_back(checked_gains(record));
-  out.explanation = Search{config, out.records}.run();
+  if (!is_base_declared(config.model))
+    config.model.base = base_of(out.records, config.model.inertia == "identify");
+  const bool chosen = config.model.base != out.config.model.base;
+  config.model.base_is_set = out.config.model.base_is_set;
+  out.explanation = search(config, out.records, is_base_declared(out.config.model));
+  if (chosen)
+    out.explanation.notes.push_back(
+        "Nobody declared a base: the record bears out what stands there. To fix it: [model] base");
   return out;
 }
 
 /// A mass behind a filter, which takes noise away, has to be plainer or better by far.
 bool is_preferred(const Explanation& second, const Explanation& first) {
-  constexpr double kByFar = 0.1;
   if (!second.base.fit.ok) return false;
   const double share = second.final.fit.held_out_nmse / first.final.fit.held_out_nmse;
   if (!second.is_complete()) return !first.is_complete() && share < 1.0;
@@ -172,7 +219,7 @@ void try_driven_mass(Explained& found, const ExplainOptions& options) {
   }
   Config config = found.config;
   config.model.inertia = "identify";
-  Explained driven = search(config, options);
+  Explained driven = look_for(config, options);
   Explanation& second = driven.explanation;
   if (!is_preferred(second, first)) return;
   second.notes.insert(second.notes.begin(),
@@ -184,7 +231,7 @@ void try_driven_mass(Explained& found, const ExplainOptions& options) {
 }  // namespace
 
 Explanation explain(const Config& given, const ExplainOptions& options) {
-  Explained found = search(given, options);
+  Explained found = look_for(given, options);
   try_driven_mass(found, options);
   const std::vector<Series>& records = found.records;
   Explanation& out = found.explanation;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/diagnosis/common/evidence.hpp"
+#include "app/diagnosis/rig/thresholds.hpp"
 #include "app/diagnosis/rig/trials.hpp"
 
 namespace dampline::app::rig {
@@ -74,6 +75,10 @@ void take_record(const Explanation& e, const Series& series, double start_s, Eig
   const Eigen::Index first = final.sample.front();
   for (Eigen::Index r = 0; r + joined <= measured.size(); r += joined) {
     const Eigen::Index at = first + r;
+    if (series.why_left_out(at) == Series::kRest) {
+      meter.gap();
+      continue;
+    }
     EvidencePoint p;
     p.time_s = start_s + static_cast<double>(at) * series.interval_s;
     p.deflection_m = series.deflection_m.segment(at, joined).mean();
@@ -94,7 +99,7 @@ Eigen::VectorXd sliding(const Model& model, double v) {
   slide.deflection_m = Eigen::Vector2d{v < 0.0 ? 1.0 : -1.0, 0.0};
   slide.velocity_mps = Eigen::Vector2d{v, v};
   slide.force_n = Eigen::Vector2d::Zero();
-  Eigen::VectorXd out{model.fit.theta.size()};
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(model.fit.theta.size());
   for (std::size_t c = 0; c < model.columns.size(); ++c)
     out[static_cast<Eigen::Index>(c)] = evaluate(model.columns[c], slide)[1];
   return out;
@@ -146,6 +151,10 @@ Convergence convergence_of(const Model& model, const std::vector<Series>& record
 
 /// Forces of the final law in steady sliding in the place of those of `curve`, at its velocities.
 void put_law(const Explanation& e, std::vector<CurveRow>& curve) {
+  // Columns of a change over the record follow the others and have no deviation of their own here.
+  const Eigen::MatrixXd& all = e.final.fit.covariance;
+  const Eigen::Index own = all.rows() - static_cast<Eigen::Index>(e.final.changes.size());
+  const Eigen::MatrixXd covariance = all.topLeftCorner(own, own);
   double slowest = 0.0;
   for (const CurveRow& row : curve)
     if (row.velocity_mps > 0.0 && (slowest == 0.0 || row.velocity_mps < slowest))
@@ -157,7 +166,7 @@ void put_law(const Explanation& e, std::vector<CurveRow>& curve) {
     past_zero = past_zero || row.velocity_mps == 0.0;
     const Eigen::VectorXd columns = sliding(e.final, v);
     row.force_n = columns.dot(e.final.fit.theta);
-    row.std_n = std::sqrt(std::max(columns.dot(e.final.fit.covariance * columns), 0.0));
+    row.std_n = std::sqrt(std::max(columns.head(own).dot(covariance * columns.head(own)), 0.0));
   }
 }
 
@@ -166,7 +175,11 @@ void put_law(const Explanation& e, std::vector<CurveRow>& curve) {
 bool Explanation::is_complete() const noexcept {
   const double nmse = final.fit.held_out_nmse;
   const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
-  return alike.empty() && (nmse <= above * final.floor_nmse || nmse < kNegligible);
+  if (!alike.empty() || !impossible.empty()) return false;
+  if (nmse < kNegligible) return true;
+  const double structured = std::max(signature.travel_share, signature.surface_share);
+  const bool noise = final.floor_noise_share > kStructured;
+  return nmse <= above * final.floor_nmse && !(noise && structured > kStructured);
 }
 
 const char* Explanation::verdict() const {

@@ -10,6 +10,13 @@
 
 namespace dampline::app::rig {
 
+/// A change of the friction over the record, as a share of it.
+struct Change {
+  Regressor::Time time{Regressor::Time::kSlope};
+  double at{0.0};  ///< share of the record, of a step
+  int side{0};     ///< of the force: 1 or -1; 0: both
+};
+
 /// A model of the force: which columns, their coefficients.
 struct Model {
   std::vector<std::string> terms;
@@ -19,6 +26,8 @@ struct Model {
   /// Of `parameters`, those that are a coefficient: which one, by its place in the fit.
   std::vector<std::pair<std::size_t, Eigen::Index>> coefficients;
   double ridge{0.0};              ///< of the fit
+  int friction{-1};               ///< the column that is the base's sign of v; -1: none
+  std::vector<Change> changes;    ///< of the friction; its columns follow the others
   double skew_s{0.0};             ///< the force is late by this
   Mode path;                      ///< that the force passes before it is measured
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
@@ -48,12 +57,10 @@ struct Explanation {
   Convergence convergence;         ///< of the final model's coefficients, over all records
   std::vector<std::string> notes;  ///< how the records were read, a sentence each
   std::string alike;               ///< effects that explain alike, so that none is named; empty
+  std::string impossible;          ///< figures below zero that cannot be; empty
   [[nodiscard]] const char* verdict() const;
   /// No more is left than noise and resolution make.
   [[nodiscard]] bool is_complete() const noexcept;
-  static constexpr double kIncompleteAbove = 1.5;  ///< times the floor that noise makes
-  static constexpr double kMotionAbove = 3.0;      ///< times what errors of the motion make
-  static constexpr double kNegligible = 1e-5;      ///< nmse that no rig is held to
 };
 
 /// Puts the final law and the explanation into what identify says of the first record, and judges

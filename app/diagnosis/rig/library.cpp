@@ -13,6 +13,8 @@ namespace {
 constexpr std::array<double, 5> kFrictionOfScale{1e-5, 5e-5, 2.5e-4, 1e-3, 3e-3};
 constexpr double kNoiseTimes = 3.0;  // a shorter stop would follow the noise
 constexpr double kShortestMemory = 6e-3;
+constexpr double kTravelSteps =
+    0.5;  // of the motion's rms from sample to sample: a shorter one is a sign
 constexpr double kMemoryRatio = 1.25;
 constexpr double kLongestMemory = 0.8;
 constexpr double kSharp = 3.0;  // times the width that an error of the velocity makes
@@ -41,7 +43,7 @@ bool needs_speeds(const std::string& effect) {
 void add_memory(Library& out, const Scale& scale) {
   for (const double share : ratios(kShortestMemory, kLongestMemory, kMemoryRatio)) {
     const double a = share * scale.deflection_m;
-    if (a < kNoiseTimes * scale.noise_m) continue;
+    if (a < kNoiseTimes * scale.noise_m || a < kTravelSteps * scale.step_m) continue;
     const Eigen::Index stop = out.add({Kind::kStop, a, 0.0});
     out.candidates.push_back({"presliding_hysteresis", a, {stop}, 1});
     const Eigen::Index up = out.add({Kind::kGapUp, a, 0.0});
@@ -66,6 +68,7 @@ void add_friction(Library& out, const Scale& scale) {
 
 void add_damping(Library& out, const core::Terms& base) {
   const Eigen::Index v = out.add({Kind::kVelocity, 0.0, 0.0});
+  out.viscous = v;
   const Eigen::Index speed = out.add({Kind::kSpeed, 0.0, 0.0});
   if (base.viscous != core::Branches::kNone) out.base.push_back(v);
   if (base.viscous == core::Branches::kSeparate) out.base.push_back(speed);
@@ -124,8 +127,17 @@ Scale scale_of(const std::vector<Series>& records) {
     out.sign_mps = std::max(out.sign_mps, s.config.sign_width_mps);
   }
   out.velocity_mps = std::sqrt(squares / samples);
+  out.step_m = out.velocity_mps * records.front().interval_s;
   out.steady = is_steady(records);
   return out;
+}
+
+bool is_memory_travel(double travel_m, const Scale& scale) noexcept {
+  return travel_m > 0.9 * kShortestMemory * scale.deflection_m;
+}
+
+bool is_base_declared(const ModelConfig& model) {
+  return model.base_is_set || model.base != ModelConfig{}.base;
 }
 
 bool is_smooth(const Regressor& column, const Scale& scale) noexcept {
@@ -153,6 +165,7 @@ Library make_library(const Config& config, const Scale& scale) {
   out.mass = out.add({Kind::kAcceleration, 0.0, 0.0});
   out.base_offset = base.offset || base.coulomb == core::Branches::kSeparate;
   out.base_spring = base.stiffness;
+  out.may_add_spring = config.model.stiffness == "auto";
   if (out.base_offset) out.base.push_back(out.offset);
   if (out.base_spring) out.base.push_back(out.spring);
   add_damping(out, base);

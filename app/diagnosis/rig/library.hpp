@@ -24,6 +24,7 @@ struct Scale {
   double deflection_m{0.0};
   double velocity_mps{0.0};
   double noise_m{0.0};
+  double step_m{0.0};    ///< rms of the motion from sample to sample
   double sign_mps{0.0};  ///< below it the sign of v is uncertain
   bool steady{false};    ///< all motion is at one speed: nothing can be a function of it
 };
@@ -31,6 +32,9 @@ struct Scale {
 
 /// From one width of a smooth law of friction to the next.
 inline constexpr double kFrictionWidthRatio = 1.2;
+
+/// A travel that is a memory, and does not only stand for a sign.
+[[nodiscard]] bool is_memory_travel(double travel_m, const Scale& scale) noexcept;
 
 /// A law of friction wider than an error of the velocity makes it.
 [[nodiscard]] bool is_smooth(const Regressor& column, const Scale& scale) noexcept;
@@ -47,6 +51,9 @@ struct Library {
   Eigen::Index mass{0};
   bool base_offset{false};
   bool base_spring{false};
+  bool may_add_spring{false};   ///< nobody has said that there is none
+  bool base_is_declared{true};  ///< otherwise the record chooses friction and damping
+  Eigen::Index viscous{0};
   bool wants_skew{false};
   bool wants_drift{false};
   bool wants_impacts{false};
@@ -58,6 +65,9 @@ struct Library {
     return columns[static_cast<std::size_t>(i)];
   }
 };
+
+/// Whether somebody has said what the base is.
+[[nodiscard]] bool is_base_declared(const ModelConfig& model);
 
 /// Throws UsageError for a base that a rig cannot have.
 [[nodiscard]] Library make_library(const Config& config, const Scale& scale);

@@ -26,7 +26,6 @@ constexpr double kLeastDamping = 0.002;
 constexpr double kNoResonance = 0.7;
 constexpr double kResonates = 0.85;  // of what a lag without a resonance leaves
 constexpr double kResonanceSignificant = 3.0;
-constexpr double kFrequencyStep = 0.01;  // of a frequency, for its deviation
 
 double mean_hz(const std::vector<Series>& records) {
   double velocity = 0.0;
@@ -143,22 +142,6 @@ std::optional<Trial> try_path(const std::vector<Series>& records, const TrialBas
       block_t(lag.fit, best.fit) < kResonanceSignificant)
     return std::nullopt;
   return trial_of(best, without);
-}
-
-Mode mode_deviation(const std::vector<Series>& records, const TrialBase& base, const Trial& trial) {
-  const bool attached = !trial.columns.empty();
-  const auto fit_of = [&](const Mode& m) {
-    return attached ? fit_attached(records, base, m) : fit_behind(records, base, m);
-  };
-  const Fit middle = fit_of(trial.mode);
-  const auto deviation = [&](const Mode& low_mode, const Mode& high_mode, double step) {
-    return deviation_of(fit_of(low_mode), middle, fit_of(high_mode), step);
-  };
-  const double d_hz = kFrequencyStep * trial.mode.hz;
-  const double d_damping = 0.2 * trial.mode.damping;
-  const auto [hz, damping] = trial.mode;
-  return {deviation({hz - d_hz, damping}, {hz + d_hz, damping}, d_hz),
-          deviation({hz, damping - d_damping}, {hz, damping + d_damping}, d_damping)};
 }
 
 }  // namespace dampline::app::rig

@@ -36,13 +36,6 @@ Eigen::Index stride_of(const Series& series, bool filtered) {
   return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(samples));
 }
 
-void leave_out(const Series& record, Rows& rows) {
-  if (record.left_out.size() != record.size()) return;
-  for (std::size_t i = 0; i < rows.sample.size(); ++i)
-    if (record.left_out[rows.sample[i]] > 0.0)
-      rows.values.row(static_cast<Eigen::Index>(i)).setZero();
-}
-
 /// Columns of very different units on one scale.
 Eigen::VectorXd scale_of(const Eigen::MatrixXd& normal) {
   Eigen::VectorXd scale = normal.diagonal();
@@ -84,23 +77,42 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& products, const ColumnSet& set) {
 
 }  // namespace
 
-Regression::Regression(const std::vector<Regressor>& columns, const std::vector<Series>& records)
-    : records_{records.size()} {
-  const bool filtered = std::any_of(columns.begin(), columns.end(),
-                                    [](const Regressor& c) { return c.kind == Kind::kInertia; });
+std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
+                                    const std::vector<Series>& records) {
+  const bool filtered = is_filtered(columns);
+  std::vector<Equations> out;
+  for (const Series& record : records) {
+    Rows rows = rows_of(columns, record, stride_of(record, filtered));
+    std::vector<Eigen::Index> moving;
+    std::vector<Eigen::Index> kept;
+    for (std::size_t i = 0; i < rows.sample.size(); ++i) {
+      const double why = record.why_left_out(rows.sample[i]);
+      if (why != Series::kRest) moving.push_back(static_cast<Eigen::Index>(i));
+      if (why == 0.0) kept.push_back(static_cast<Eigen::Index>(i));
+    }
+    const Eigen::VectorXd force = rows.values.rightCols<1>()(moving);
+    const double weight = 1.0 / (force.array() - force.mean()).square().sum();
+    if (kept.size() == rows.sample.size()) {
+      out.push_back({std::move(rows.values), std::move(rows.sample), weight});
+      continue;
+    }
+    out.push_back({rows.values(kept, Eigen::all), {}, weight});
+    for (const Eigen::Index i : kept)
+      out.back().sample.push_back(rows.sample[static_cast<std::size_t>(i)]);
+  }
+  return out;
+}
+
+Regression::Regression(const std::vector<Equations>& records) : records_{records.size()} {
   const std::size_t parts = std::max<std::size_t>(3, kBlocksOfAll / records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
-    Rows rows = rows_of(columns, records[r], stride_of(records[r], filtered));
-    const Eigen::Index count = rows.values.rows();
-    const Eigen::VectorXd force = rows.values.rightCols<1>();
-    const double weight = 1.0 / (force.array() - force.mean()).square().sum();
-    leave_out(records[r], rows);
+    const Eigen::Index count = records[r].values.rows();
     for (std::size_t p = 0; p < parts; ++p) {
       const auto from = count * static_cast<Eigen::Index>(p) / static_cast<Eigen::Index>(parts);
       const auto to = count * static_cast<Eigen::Index>(p + 1) / static_cast<Eigen::Index>(parts);
-      const auto block = rows.values.middleRows(from, to - from);
-      Block out{Eigen::MatrixXd::Zero(block.cols(), block.cols()), r, r};
-      out.products.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose(), weight);
+      const auto block = records[r].values.middleRows(from, to - from);
+      Block out{Eigen::MatrixXd::Zero(block.cols(), block.cols()), r, r, 2 * p < parts};
+      out.products.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose(), records[r].weight);
       out.products.triangularView<Eigen::StrictlyUpper>() = out.products.transpose();
       blocks_.push_back(std::move(out));
     }
@@ -117,11 +129,13 @@ Fit Regression::fit(const ColumnSet& set, double ridge) const {
   std::vector<Eigen::MatrixXd> parts;
   const auto n = static_cast<Eigen::Index>(set.size());
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  Eigen::MatrixXd first_half = total;
   std::vector<Eigen::MatrixXd> fold(folds_, total);
   for (const Block& block : blocks_) {
     parts.push_back(part_of(block.products, set));
     fold[block.fold] += parts.back();
     total += parts.back();
+    if (block.is_first_half) first_half += parts.back();
   }
   Eigen::MatrixXd inverse;
   if (!solve(total, ridge, out.theta, &inverse)) return out;
@@ -141,7 +155,15 @@ Fit Regression::fit(const ColumnSet& set, double ridge) const {
   }
   for (const double nmse : out.record_nmse)
     out.held_out_nmse += nmse / static_cast<double>(records_);
-  out.covariance = inverse * meat * inverse;
+  // The blocks' own fit has made their scores too small by as many as there are coefficients.
+  const auto blocks = static_cast<double>(blocks_.size());
+  const double free = std::max(blocks - static_cast<double>(n), 0.25 * blocks);
+  out.covariance = blocks / free * inverse * meat * inverse;
+  Eigen::VectorXd second;
+  if (solve(first_half, ridge, out.half_difference) && solve(total - first_half, ridge, second))
+    out.half_difference -= second;
+  else
+    out.half_difference = Eigen::VectorXd::Zero(n);
   out.ok = true;
   return out;
 }

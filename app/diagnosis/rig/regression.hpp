@@ -20,6 +20,7 @@ struct Fit {
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;             ///< from the scatter of the blocks
   std::vector<Eigen::VectorXd> left_out;  ///< theta without each fold
+  Eigen::VectorXd half_difference;        ///< theta of the records' first halves less the second's
   std::vector<double> record_nmse;        ///< held out, by record
   std::vector<double> block_error;        ///< held out, by block; their mean is the nmse
   double held_out_nmse{0.0};
@@ -39,12 +40,23 @@ struct Fit {
   return 1.0 - after.held_out_nmse / before.held_out_nmse;
 }
 
+/// Equations of one record, the force as the last column, without what is left out.
+struct Equations {
+  Eigen::MatrixXd values;
+  std::vector<Eigen::Index> sample;  ///< of the record, of each row
+  double weight{0.0};                ///< 1 / (N var f), standstill apart
+};
+[[nodiscard]] std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
+                                                  const std::vector<Series>& records);
+
 /// Sums of products of all columns, block by block. Every record counts alike: its rows are divided
 /// by N var f. Held out are whole records where there are three or more, otherwise blocks, dealt
 /// out to five folds by a fixed shuffle, so that they keep no step with the motion.
 class Regression {
  public:
-  Regression(const std::vector<Regressor>& columns, const std::vector<Series>& records);
+  Regression(const std::vector<Regressor>& columns, const std::vector<Series>& records)
+      : Regression{equations_of(columns, records)} {}
+  explicit Regression(const std::vector<Equations>& records);
 
   /// `ridge`: of the diagonal, for columns that overlap.
   [[nodiscard]] Fit fit(const ColumnSet& set, double ridge) const;
@@ -55,6 +67,7 @@ class Regression {
     Eigen::MatrixXd products;
     std::size_t record;
     std::size_t fold;
+    bool is_first_half;
   };
 
   std::vector<Block> blocks_;

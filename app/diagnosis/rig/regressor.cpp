@@ -126,6 +126,11 @@ void change_over_time(const Regressor& column, Eigen::VectorXd& values) {
 
 }  // namespace
 
+bool is_filtered(const std::vector<Regressor>& columns) noexcept {
+  return std::any_of(columns.begin(), columns.end(),
+                     [](const Regressor& c) { return c.kind == Kind::kInertia; });
+}
+
 Eigen::VectorXd evaluate(const Regressor& column, const Series& series) {
   Eigen::VectorXd out = steady(column, series);
   if (column.time != Regressor::Time::kSteady) change_over_time(column, out);
@@ -141,8 +146,7 @@ Eigen::VectorXd left_of(const Series& series, const std::vector<Regressor>& colu
 }
 
 Rows rows_of(const std::vector<Regressor>& columns, const Series& series, Eigen::Index stride) {
-  const bool filtered = std::any_of(columns.begin(), columns.end(),
-                                    [](const Regressor& c) { return c.kind == Kind::kInertia; });
+  const bool filtered = is_filtered(columns);
   const int half = filtered ? core::half_support_samples(series.config) : 0;
   const core::TestFunction window{std::max(half, core::TestFunction::kDifference + 1),
                                   series.interval_s};

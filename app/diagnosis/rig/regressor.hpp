@@ -53,6 +53,9 @@ struct Regressor {
 
 using Kind = Regressor::Kind;
 
+/// Whether the equations of a set are seen through the test function: where x'' is among them.
+[[nodiscard]] bool is_filtered(const std::vector<Regressor>& columns) noexcept;
+
 /// A column at every sample of a record, behind the path that its force passes; kInertia gives x,
 /// which only rows_of differentiates.
 [[nodiscard]] Eigen::VectorXd evaluate(const Regressor& column, const Series& series);

@@ -26,8 +26,7 @@ std::vector<Eigen::Index> certain(const Series& record) {
       turned = i;
       while (!out.empty() && out.back() >= i - near) out.pop_back();
     }
-    const bool left_out = record.left_out.size() == record.size() && record.left_out[i] > 0.0;
-    if (i > turned + near && !left_out) out.push_back(i);
+    if (i > turned + near && record.why_left_out(i) == 0.0) out.push_back(i);
   }
   return out;
 }
@@ -115,9 +114,9 @@ bool is_near_reversal(const Series& record, Eigen::Index at) {
   return part.minCoeff() <= 0.0 && part.maxCoeff() >= 0.0;
 }
 
-using State = std::pair<int, int>;
+using Cell = std::pair<int, int>;
 
-State state_at(const Series& record, Eigen::Index i, double x_m, double v_mps) {
+Cell state_at(const Series& record, Eigen::Index i, double x_m, double v_mps) {
   return {bin_of(record.deflection_m[i], x_m), bin_of(record.velocity_mps[i], v_mps)};
 }
 
@@ -125,18 +124,18 @@ State state_at(const Series& record, Eigen::Index i, double x_m, double v_mps) {
 std::vector<Peak> unannounced(const Series& record, const std::vector<Peak>& peaks) {
   const double x_m = 2.0 * std::sqrt(record.deflection_m.array().square().mean());
   const double v_mps = 2.0 * std::sqrt(record.velocity_mps.array().square().mean());
-  std::map<State, int> passes;
-  std::map<State, int> hits;
-  State last{-1, -1};
+  std::map<Cell, int> passes;
+  std::map<Cell, int> hits;
+  Cell last{-1, -1};
   for (Eigen::Index i = 0; i < record.size(); ++i) {
-    const State now = state_at(record, i, x_m, v_mps);
+    const Cell now = state_at(record, i, x_m, v_mps);
     if (now != last) ++passes[now];
     last = now;
   }
   for (const Peak& p : peaks) ++hits[state_at(record, p.at, x_m, v_mps)];
   std::vector<Peak> out;
   for (const Peak& p : peaks) {
-    const State state = state_at(record, p.at, x_m, v_mps);
+    const Cell state = state_at(record, p.at, x_m, v_mps);
     const int all = passes[state];
     if (all >= kFewestPasses && hits[state] < kOftenAt * all) out.push_back(p);
   }
@@ -182,12 +181,16 @@ Impacts find_impacts(const std::vector<Series>& records,
   Impacts out;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Series& record = records[r];
-    out.left_out.emplace_back(Eigen::VectorXd::Zero(record.size()));
+    out.left_out.push_back(record.left_out.size() == record.size()
+                               ? record.left_out
+                               : Eigen::VectorXd::Zero(record.size()));
     if (kReachS < 3.0 * record.interval_s) continue;  // not seen apart from a reversal
     const auto reach =
         std::max(kLeastReach, static_cast<Eigen::Index>(kReachS / record.interval_s));
     std::vector<Peak> peaks = peaks_of(sharp_part(left_n[r], reach), reach);
-    std::erase_if(peaks, [&](const Peak& p) { return is_near_reversal(record, p.at); });
+    std::erase_if(peaks, [&](const Peak& p) {
+      return is_near_reversal(record, p.at) || record.why_left_out(p.at) != 0.0;
+    });
     const double share = 2.0 * static_cast<double>(reach) * static_cast<double>(peaks.size()) /
                          static_cast<double>(record.size());
     const std::vector<Peak> alone = unannounced(record, peaks);
@@ -197,7 +200,7 @@ Impacts find_impacts(const std::vector<Series>& records,
     for (const Peak& p : alone) {
       const Eigen::Index from = std::max<Eigen::Index>(p.at - reach, 0);
       const Eigen::Index to = std::min(p.at + reach + 1, record.size());
-      out.left_out.back().segment(from, to - from).setOnes();
+      out.left_out.back().segment(from, to - from).setConstant(Series::kImpact);
       out.time_s.push_back(record.time_s[p.at]);
       out.peak_n.push_back(p.size_n);
     }

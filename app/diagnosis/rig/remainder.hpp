@@ -24,7 +24,7 @@ struct Remainder {
 
 /// Short, strong forces that nothing in the motion announces.
 struct Impacts {
-  std::vector<Eigen::VectorXd> left_out;  ///< of each record: 1 where an impact is, otherwise 0
+  std::vector<Eigen::VectorXd> left_out;  ///< of each record, as Series has it
   std::vector<double> time_s;
   std::vector<double> peak_n;
   [[nodiscard]] bool found() const noexcept { return time_s.size() >= kFewest; }

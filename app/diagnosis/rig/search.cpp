@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/diagnosis/rig/search.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,210 +6,224 @@
 #include <numeric>
 #include <utility>
 
-#include "app/diagnosis/rig/regression.hpp"
+#include "app/diagnosis/rig/describe.hpp"
+#include "app/diagnosis/rig/joint.hpp"
 #include "app/diagnosis/rig/remainder.hpp"
+#include "app/diagnosis/rig/steps.hpp"
+#include "app/diagnosis/rig/strokes.hpp"
+#include "app/diagnosis/rig/thresholds.hpp"
 
 namespace dampline::app::rig {
 namespace {
 
-constexpr double kNeeded = 0.01;  // loss without it that keeps an effect
-constexpr std::size_t kMostSteps = 4;
-constexpr int kWidthRounds = 3;
-constexpr double kWidestOfAll = 0.9;  // of the speed's rms
-constexpr double kClearlyWider = 0.9;
-constexpr double kRichRidge = 1e-2;
-constexpr double kUntouched = 0.95;
-constexpr double kDominantSpring = 0.5;  // of the base's error, that a spring takes
-
-/// A column's own name may be its effect's: an offset.
-void add_once(const Parameter& parameter, std::vector<Parameter>& out) {
-  const bool there = std::any_of(out.begin(), out.end(),
-                                 [&](const Parameter& p) { return p.name == parameter.name; });
-  if (!there) out.push_back(parameter);
-}
-
-}  // namespace
-
-Search::Search(const Config& config, const std::vector<Series>& records)
-    : records_{records}, scale_{scale_of(records)}, library_{make_library(config, scale_)} {
-  evaluate_columns();
-}
-
-bool Search::filtered() const {
-  return std::any_of(library_.columns.begin(), library_.columns.end(),
-                     [](const Regressor& c) { return c.kind == Kind::kInertia; });
-}
-
-ColumnSet Search::set_of(const ColumnSet& more, std::size_t width) const {
-  ColumnSet out;
-  if (library_.base_friction && base_friction_left_) out.push_back(library_.friction[width]);
-  out = joined(out, library_.base);
-  if (spring_added_) out = joined(out, {library_.spring});
-  if (mass_added_) out = joined(out, {library_.mass});
-  return joined(out, more);
-}
-
-double Search::ridge() const {
-  double out = 0.0;
-  for (const Chosen& c : chosen_) out = std::max(out, c.ridge);
-  return out;
-}
-
-Search::Judged Search::judge(const ColumnSet& more) const {
-  Judged best;
-  const bool profiled = library_.base_friction && base_friction_left_;
-  for (std::size_t w = 0; w < (profiled ? library_.friction.size() : 1); ++w) {
-    ColumnSet set = set_of(more, w);
-    Fit fit = evidence_->fit(set, ridge());
-    if (fit.beats(best.fit)) best = {std::move(fit), w, std::move(set)};
-  }
-  return best;
-}
-
-ColumnSet Search::chosen_columns() const {
-  ColumnSet out;
-  for (const Chosen& c : chosen_) out = joined(out, c.candidate.columns);
-  return out;
-}
-
-std::vector<Regressor> Search::columns_of(const ColumnSet& set) const {
-  std::vector<Regressor> out;
-  out.reserve(set.size());
-  for (const Eigen::Index i : set) out.push_back(library_.at(i));
-  return out;
-}
-
-Floor Search::floor_of(const ColumnSet& more) const {
-  const Judged judged = judge(more);
-  if (!judged.fit.ok) return {};
-  return surrogate_floor(
-      records_, {columns_of(judged.set), judged.fit.theta, columns_of(library_.friction), ridge()});
-}
-
-/// The way to write sign v that a fit has of the base's friction.
-bool Search::is_friction(Eigen::Index column, const Judged& judged) const {
-  return library_.base_friction && column == library_.friction[judged.width];
-}
-
-bool Search::can_add(const Candidate& candidate) const {
-  return std::none_of(chosen_.begin(), chosen_.end(), [&](const Chosen& c) {
-    return c.candidate.effect == candidate.effect ||
-           (is_memory(c.candidate.effect) && is_memory(candidate.effect));
-  });
-}
-
-std::vector<std::string> Search::terms() const {
-  std::vector<std::string> out = library_.base_terms;
-  if (spring_added_) out.emplace_back("linear spring");
-  if (mass_added_) out.emplace_back("moving mass");
-  for (const Chosen& c : chosen_) out.push_back(c.candidate.effect);
-  return out;
-}
-
-void Search::finish_step() {
-  chosen_.back().step.held_out_after = error();
-  chosen_.back().step.terms = terms();
-}
-
-void Search::choose(Candidate candidate, double before_nmse, double gain, double t) {
-  Chosen chosen;
-  chosen.step.effect = candidate.effect;
-  chosen.candidate = std::move(candidate);
-  chosen.step.held_out_before = before_nmse;
-  chosen.step.gain = gain;
-  chosen.step.block_t = t;
-  chosen_.push_back(std::move(chosen));
-}
-
-/// A linear term that belongs to the rig rather than to the damper stays where it helps.
-void Search::try_linear(bool& added) {
-  if (added) return;
-  const double without = error();
-  added = true;
-  added = error() < (1.0 - kNeeded) * without;
-}
-
-/// Neither is less than nothing: a negative one would only help the fit.
-void Search::try_mass() {
-  try_linear(mass_added_);
-  mass_added_ = mass_added_ && judge_chosen().of(library_.mass).value > 0.0;
-}
-
-/// A spring that carries most of the force is no effect that a damper lacks: effects are looked for
-/// beside it.
-void Search::take_dominant_spring() {
-  const Judged without = judge({});
-  const Judged with = judge({library_.spring});
-  if (!with.fit.ok || with.fit.held_out_nmse > kDominantSpring * without.fit.held_out_nmse) return;
-  spring_added_ = true;
-  notes_.push_back(
-      fmt::format("A linear spring, which the base model does not have, was added first: held-out "
-                  "rrse {:.3f} -> {:.3f}. To have it in the base: [model] stiffness = \"identify\"",
-                  std::sqrt(without.fit.held_out_nmse), std::sqrt(with.fit.held_out_nmse)));
-}
-
-/// Where the widest law of friction is the best, still wider ones, which are hardly another thing
-/// than viscous damping, have to be clearly better.
-void Search::widen() {
-  if (!library_.base_friction || !base_friction_left_) return;
-  const Judged now = judge(beside_both());
-  const auto width_of = [&](std::size_t i) { return library_.at(library_.friction[i]).a; };
-  for (std::size_t i = 0; i < library_.friction.size(); ++i)
-    if (!now.fit.ok || width_of(i) > width_of(now.width)) return;
-  const std::size_t before = library_.friction.size();
-  for (const double a :
-       ratios(width_of(now.width), kWidestOfAll * scale_.velocity_mps, kFrictionWidthRatio))
-    library_.friction.push_back(library_.add({Kind::kSign, kFrictionWidthRatio * a, 0.0}));
-  evaluate_columns();
-  if (judge(beside_both()).fit.held_out_nmse > kClearlyWider * now.fit.held_out_nmse)
-    library_.friction.resize(before);
-}
-
-/// A smooth law of friction between two widths of the grid would leave what looks like an effect.
-void Search::refine_width() {
-  widen();
-  double ratio = kFrictionWidthRatio;
-  for (int round = 0; round < kWidthRounds; ++round) {
-    if (!library_.base_friction || !base_friction_left_) return;
-    const Judged now = judge(beside_both());
-    if (!now.fit.ok) return;
-    const Regressor best = library_.at(library_.friction[now.width]);
-    if (!is_smooth(best, scale_)) return;
-    ratio = std::sqrt(ratio);
-    for (const double a : {best.a / ratio, best.a * ratio})
-      library_.friction.push_back(library_.add({Kind::kSign, a, 0.0}));
-    evaluate_columns();
+void keep_rejected(State& s, const std::vector<Ranked>& order) {
+  s.rejected.clear();
+  s.losers.clear();
+  for (std::size_t i = 0; i < order.size() && i <= kRunnersUp; ++i) {
+    s.rejected.push_back(
+        {order[i].candidate->effect, order[i].fit.held_out_nmse, order[i].gain, order[i].t});
+    if (i > 0) s.losers.push_back(*order[i].candidate);
   }
 }
 
-void Search::backward() {
-  for (std::size_t i = 0; chosen_.size() > 1 && i < chosen_.size();) {
-    const double with = error();
-    const Chosen removed = chosen_[i];
-    if (is_memory(removed.candidate.effect) || removed.candidate.columns.empty()) {
-      ++i;
-      continue;
+/// One more step; false where nothing passes.
+bool forward(State& s) {
+  std::vector<Ranked> order = rank(s);
+  if (order.empty()) return false;
+  const auto left_before = [](const auto& ranked) {
+    return ranked.fit.held_out_nmse / (1.0 - ranked.gain);
+  };
+  prefer_to_offset(s, order);
+  if (passes(s, order.front(), left_before(order.front()))) prefer_beside_another(s, order);
+  prefer_memory(s, order);
+  const Ranked top = order.front();
+  keep_rejected(s, order);
+  const std::optional<Trial> trial = best_trial(s, left_before(top));
+  if (take_mass(s, order, trial)) return true;
+  if (trial && is_better(s, *trial, order)) {
+    const Candidate no_column;
+    const Ranked as_ranked{&no_column, trial->gain, trial->t, trial->fit,
+                           std::abs(trial->skew_s) < kShortSkew * s.records.front().interval_s};
+    if (passes(s, as_ranked, left_before(*trial))) {
+      take(s, *trial);
+      return true;
     }
-    chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(i));
-    const Judged without = judge_chosen();
-    if (without.fit.ok && without.fit.held_out_nmse < (1.0 + kNeeded) * with) {
-      i = 0;
-      continue;
+  }
+  if (!passes(s, top, left_before(top))) return false;
+  s.alike = alike(s, order);
+  if (!s.alike.empty()) return false;
+  choose(s, *top.candidate, top.gain, top.t);
+  Chosen& chosen = s.chosen.back();
+  chosen.runners_up = std::exchange(s.losers, {});
+  chosen.other_memory = other_memory_of(order);
+  s.rejected.clear();
+  if (!filtered(s)) try_mass(s);
+  if (is_memory(chosen.step.effect)) {
+    refine_memory(s, chosen);
+    try_bouc_wen(s, chosen);
+  }
+  return true;
+}
+
+/// The records as they were before any step from the `count`-th on had changed them.
+const std::vector<Series>& records_at(const State& s, std::size_t count) {
+  for (std::size_t i = count; i < s.chosen.size(); ++i)
+    if (!s.chosen[i].before.empty()) return s.chosen[i].before;
+  return s.records;
+}
+
+/// The base and the first `count` steps.
+TrialBase base_with(const State& s, std::size_t count) {
+  TrialBase out;
+  ColumnSet set = s.library.base;
+  if (s.spring_added && (count > 0 || s.base_takes_spring)) set = joined(set, {s.library.spring});
+  if (s.mass_added && (count > 0 || s.base_takes_mass)) set = joined(set, {s.library.mass});
+  bool memory = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Chosen& c = s.chosen[i];
+    set = joined(set, c.candidate.columns);
+    out.ridge = std::max(out.ridge, c.ridge);
+    memory = memory || is_memory(c.candidate.effect);
+  }
+  out.columns = columns_of(s, set);
+  if (s.library.base_friction && (s.base_friction_left || !memory))
+    out.friction = columns_of(s, s.library.friction);
+  return out;
+}
+
+/// Whether a linear term stands above zero in the base alone, too; otherwise it comes with the
+/// first step.
+bool holds_in_base(const State& s, Eigen::Index column) {
+  const std::vector<Series>& records = records_at(s, 0);
+  const TrialBase base = base_with(s, 0);
+  const TrialFits fits{records, base, {s.library.at(column)}};
+  const Fit with = fits.best({0});
+  return with.beats(fits.best()) &&
+         with.theta[static_cast<Eigen::Index>(base.columns.size())] > 0.0;
+}
+
+/// The base with what was added to it that is no step.
+Model base_model(const State& s, std::vector<std::string>& notes) {
+  const TrialBase base = base_with(s, 0);
+  std::vector<Series> records = records_at(s, 0);
+  Model out;
+  out.terms = s.library.base_terms;
+  if (s.spring_added && s.base_takes_spring) out.terms.emplace_back("linear spring");
+  if (s.mass_added && s.base_takes_mass) out.terms.emplace_back("moving mass");
+  if (const auto friction = TrialFits{records, base}.friction()) {
+    out.columns.push_back(*friction);
+    out.friction = 0;
+  }
+  out.columns.insert(out.columns.end(), base.columns.begin(), base.columns.end());
+  const Joint joint = fit_jointly(out, records, 0.0, s.scale);
+  std::vector<Chosen> none;
+  describe(s, joint, out, none, {}, notes);
+  return out;
+}
+
+/// A change of the friction over the record, where friction has a memory or a width of its own.
+void take_change(State& s, const Model& model) {
+  const auto drifts = [](const Chosen& c) { return c.step.effect == "time_drift"; };
+  if (!s.library.wants_drift || std::any_of(s.chosen.begin(), s.chosen.end(), drifts)) return;
+  const std::optional<Trial> trial =
+      remembers(s) ? try_change(model, s.records, ridge(s)) : std::nullopt;
+  if (trial && trial->gain > kLeastGain && trial->t > kTrialSignificant) return take(s, *trial);
+  const std::optional<StrokeChange> change = change_of_strokes(s.records, model);
+  if (!change) return;
+  choose(s, {"time_drift", 0.0, {}, 0}, 0.0, change->spread / kStrokesDiffer);
+  s.chosen.back().step.parameters = {
+      {change->side > 0 ? "time_drift_coulomb_positive" : "time_drift_coulomb_negative",
+       100.0 * change->range.value, 100.0 * change->range.std, "%"}};
+  s.notes.push_back(
+      fmt::format("The force of {} like strokes changes over the record by {:.0f} % from the least "
+                  "to the most, "
+                  "neighbours being alike: a parameter that changes.",
+                  change->strokes, 100.0 * change->range.value));
+}
+
+/// The final model, its places where they leave least; the library follows.
+Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
+  const Judged judged = judge_chosen(s);
+  Model out;
+  set = judged.set;
+  if (!judged.fit.ok) return out;
+  out.columns = columns_of(s, judged.set);
+  out.fit = judged.fit;
+  if (has_friction(s)) out.friction = 0;
+  for (const Chosen& c : s.chosen) {
+    out.skew_s += c.skew_s;
+    if (c.path.hz > 0.0) out.path = c.path;
+  }
+  take_change(s, out);
+  for (const Chosen& c : s.chosen)
+    out.changes.insert(out.changes.end(), c.changes.begin(), c.changes.end());
+  out.ridge = ridge(s);
+  const Joint joint = fit_jointly(out, s.records, out.ridge, s.scale);
+  for (std::size_t i = 0; i < set.size(); ++i)
+    s.library.columns[static_cast<std::size_t>(set[i])] = out.columns[i];
+  evaluate_columns(s);
+  out.terms = terms(s);
+  describe(s, joint, out, s.chosen, set, notes);
+  return out;
+}
+
+/// The error before and after each step, and what its runners-up would have left, all with the same
+/// base and on the same records.
+void chain(State& s, const Explanation& out) {
+  double before = out.base.fit.held_out_nmse;
+  for (std::size_t i = 0; i < s.chosen.size(); ++i) {
+    Step& step = s.chosen[i].step;
+    std::vector<Regressor> more;
+    for (const Candidate& c : s.chosen[i].runners_up)
+      for (const Eigen::Index column : c.columns) more.push_back(s.library.at(column));
+    if (!more.empty()) {
+      const TrialFits fits{records_at(s, i), base_with(s, i), more};
+      Eigen::Index place = 0;
+      for (const Candidate& c : s.chosen[i].runners_up) {
+        ColumnSet set(c.columns.size());
+        std::iota(set.begin(), set.end(), place);
+        place += static_cast<Eigen::Index>(set.size());
+        const Fit fit = fits.best(set);
+        if (fit.ok)
+          step.runners_up.push_back(
+              {c.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / before, 0.0});
+      }
     }
-    chosen_.insert(chosen_.begin() + static_cast<std::ptrdiff_t>(i), removed);
-    ++i;
+    step.held_out_before = before;
+    const bool last = i + 1 == s.chosen.size();
+    const bool same = !s.chosen[i].changes.empty();
+    step.held_out_after = last || same
+                              ? out.final.fit.held_out_nmse
+                              : best_fit(records_at(s, i + 1), base_with(s, i + 1)).held_out_nmse;
+    before = step.held_out_after;
+    step.terms = out.base.terms;
+    for (std::size_t k = 0; k <= i; ++k) step.terms.push_back(s.chosen[k].step.effect);
   }
 }
 
-/// Noise of a force cell need not be white. What is Gaussian, as loud at any time and in any
-/// motion, and what all columns together cannot predict, no effect makes.
-void Search::count_noise(Explanation& out) const {
-  if (filtered() || out.is_complete() || !alike_.empty()) return;
-  const Remainder left = what_is_left(records_, out.final);
-  if (!left.is_like_noise() || left.nmse < out.final.floor_nmse) return;
-  ColumnSet all(library_.columns.size());
+/// What all columns together leave that is held out, the best that any law of the library reaches.
+Fit richest(const State& s) {
+  ColumnSet all(s.library.columns.size());
   std::iota(all.begin(), all.end(), 0);
-  const Fit rich = evidence_->fit(all, kRichRidge);
+  return s.regression->fit(all, kRichRidge);
+}
+
+/// What a complete law would leave, never more than a law that was tried does.
+void find_floor(const State& s, Explanation& out) {
+  const Law law{out.final.columns, out.final.fit.theta, columns_of(s, s.library.friction), ridge(s),
+                s.scale};
+  const Floor floor = surrogate_floor(s.records, law);
+  const Fit rich = richest(s);
+  double reached = out.final.fit.held_out_nmse;
+  if (rich.ok) reached = std::min(reached, rich.held_out_nmse);
+  out.final.floor_nmse = std::min(floor.nmse, reached);
+  out.final.floor_noise_share =
+      std::min(1.0, floor.noise_share * floor.nmse / std::max(out.final.floor_nmse, 1e-300));
+  // Noise of a force cell need not be white. What is Gaussian, as loud at any time and in any
+  // motion, and what all columns together cannot predict, no effect makes.
+  if (filtered(s) || out.is_complete() || !s.alike.empty()) return;
+  const Remainder left = what_is_left(s.records, out.final);
+  if (!left.is_like_noise() || left.nmse < out.final.floor_nmse) return;
   if (!rich.ok || rich.held_out_nmse < kUntouched * out.final.fit.held_out_nmse) return;
   out.final.floor_nmse = left.nmse;
   out.final.floor_noise_share = 1.0;
@@ -222,39 +234,60 @@ void Search::count_noise(Explanation& out) const {
       left.rms_n));
 }
 
-Explanation Search::run() {
+/// A mass, a spring, friction or damping below nothing.
+std::string impossible(const Model& model) {
+  std::string out;
+  for (const Parameter& p : model.parameters) {
+    const bool is_level = p.name == "moving_mass" || p.name == "stiffness" ||
+                          p.name.starts_with("coulomb") || p.name.starts_with("viscous");
+    if (!is_level || p.value > -kImpossible * p.std) continue;
+    out += (out.empty() ? "" : ", ") + fmt::format("{} {:.4g} {}", p.name, p.value, p.unit);
+  }
+  return out;
+}
+
+}  // namespace
+
+Explanation search(const Config& config, const std::vector<Series>& records,
+                   bool base_is_declared) {
+  State s{config, records};
+  s.library.base_is_declared = base_is_declared;
   Explanation out;
-  for (const Series& s : records_) out.records.push_back(s.record);
-  out.whole_records = evidence_->folds() == records_.size();
-  if (filtered()) out.filter_hz = records_.front().config.corner_hz;
-  describe(out.base, judge({}));
-  if (!library_.base_spring) take_dominant_spring();
-  if (library_.wants_impacts) leave_impacts_out();
-  do refine_width();
-  while (chosen_.size() < kMostSteps && forward());
-  backward();
-  spring_added_ = false;
-  if (!library_.base_spring) try_linear(spring_added_);
-  mass_added_ = false;
-  if (!filtered()) try_mass();
-  const Judged now = judge_chosen();
-  describe_steps(now);
-  out.rejected = rejected_;
-  out.alike = alike_;
-  describe(out.final, now);
-  for (const Chosen& c : chosen_) {
-    out.final.skew_s += c.skew_s;
-    if (c.path.hz > 0.0) out.final.path = c.path;
+  for (const Series& r : records) out.records.push_back(r.record);
+  out.whole_records = s.regression->folds() == records.size();
+  if (filtered(s)) out.filter_hz = records.front().config.corner_hz;
+  if (s.library.may_add_spring) take_dominant_spring(s);
+  if (s.library.wants_impacts) leave_impacts_out(s);
+  do refine_width(s);
+  while (s.chosen.size() < kMostSteps && forward(s));
+  backward(s);
+  reconsider_base(s);
+  s.spring_added = false;
+  if (s.library.may_add_spring) try_linear(s, s.spring_added);
+  s.mass_added = false;
+  if (!filtered(s)) try_mass(s);
+  ColumnSet set;
+  out.final = final_model(s, set, out.notes);
+  s.base_takes_spring = s.chosen.empty() || holds_in_base(s, s.library.spring);
+  s.base_takes_mass = s.chosen.empty() || holds_in_base(s, s.library.mass);
+  std::vector<std::string> notes_of_base;
+  out.base = base_model(s, notes_of_base);
+  if (!out.base.fit.ok || !out.final.fit.ok) {
+    out.base.fit.ok = false;
+    return out;
   }
-  out.notes = notes_;
-  const Floor floor = floor_of(chosen_columns());
-  out.final.floor_nmse = floor.nmse;
-  out.final.floor_noise_share = floor.noise_share;
-  count_noise(out);
-  for (const Chosen& c : chosen_) {
-    out.steps.push_back(c.step);
-    for (const Parameter& p : c.step.parameters) add_once(p, out.final.parameters);
-  }
+  chain(s, out);
+  out.notes.insert(out.notes.begin(), s.notes.begin(), s.notes.end());
+  out.rejected = s.rejected;
+  out.alike = s.alike;
+  out.impossible = impossible(out.final);
+  if (!out.impossible.empty())
+    out.notes.push_back(
+        fmt::format("No damper has {}: what is left out of this model is larger "
+                    "than what it names.",
+                    out.impossible));
+  find_floor(s, out);
+  for (const Chosen& c : s.chosen) out.steps.push_back(c.step);
   return out;
 }
 

@@ -43,6 +43,59 @@ void start_along(const Eigen::VectorXd& x, double v, const Mode& mode, double in
 
 constexpr double kSlowHz = 5.0;
 
+constexpr double kRestPeriods = 0.35;       // that the deflection stays within kStill
+constexpr Eigen::Index kFewestAtRest = 25;  // samples
+constexpr double kStill = 0.02;             // of its range
+constexpr double kUntilTurned = 0.5;        // periods after a rest, at most, until the motion turns
+constexpr double kMostRest = 0.8;           // of the record: more is its own kind of motion
+
+/// 1 where the deflection stays within `reach_m` for `window` samples.
+Eigen::VectorXd at_rest(const Eigen::VectorXd& x, Eigen::Index window, double reach_m) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  Eigen::Index from = 0;
+  while (from + window <= x.size()) {
+    double low = x[from];
+    double high = x[from];
+    Eigen::Index to = from;
+    for (; to < x.size(); ++to) {
+      low = std::min(low, x[to]);
+      high = std::max(high, x[to]);
+      if (high - low > reach_m) break;
+    }
+    if (to - from >= window) out.segment(from, to - from).setOnes();
+    from = to - from >= window ? to : from + std::max<Eigen::Index>(1, (to - from) / 8);
+  }
+  return out;
+}
+
+/// Standstill says nothing of a law of motion, nor does the way to the next reversal, where what
+/// friction remembers is of the time before.
+void leave_rest_out(Series& series) {
+  const Eigen::VectorXd& x = series.deflection_m;
+  const Eigen::VectorXd& v = series.velocity_mps;
+  if (x.size() == 0) return;
+  const double rms_m = std::sqrt((x.array() - x.mean()).square().mean());
+  const double period =
+      2.0 * std::numbers::pi * rms_m / (std::sqrt(v.array().square().mean()) * series.interval_s);
+  const auto window = std::max(kFewestAtRest, static_cast<Eigen::Index>(kRestPeriods * period));
+  if (!std::isfinite(period)) return;
+  Eigen::VectorXd out = at_rest(x, window, kStill * (x.maxCoeff() - x.minCoeff()));
+  const auto most = static_cast<Eigen::Index>(kUntilTurned * period);
+  for (Eigen::Index i = 1; i < x.size(); ++i) {
+    if (out[i] > 0.0 || out[i - 1] == 0.0) continue;
+    Eigen::Index to = i;
+    while (to < std::min(i + most, x.size()) && v[to] * v[i] > 0.0) ++to;
+    out.segment(i, to - i).setOnes();
+    i = to;
+  }
+  const double share = out.mean();
+  if (share == 0.0 || share > kMostRest) return;
+  series.left_out = Series::kRest * out;
+  series.notes.push_back(fmt::format(
+      "Standstill, and the way from it to the next reversal, is left out: {:.1f} % of the record.",
+      100.0 * share));
+}
+
 /// One column, row by row.
 std::vector<double> read_column(const std::string& path, const std::string& column,
                                 bool skip_bad_lines) {
@@ -98,6 +151,23 @@ ReadRows read_rows(const Record& record, Clock& clock, core::Survey& survey) {
 }
 
 }  // namespace
+
+double between(const Eigen::VectorXd& y, double place) {
+  const auto last = static_cast<double>(y.size() - 1);
+  const double at = std::clamp(place, 0.0, last);
+  const auto i = std::min(static_cast<Eigen::Index>(at), y.size() - 2);
+  const double u = at - static_cast<double>(i);
+  const double before = y[std::max<Eigen::Index>(i - 1, 0)];
+  const double after = y[std::min(i + 2, y.size() - 1)];
+  const double a = y[i];
+  const double b = y[i + 1];
+  const double slope_a = 0.5 * (b - before);
+  const double slope_b = 0.5 * (after - a);
+  const double square = u * u;
+  const double cube = square * u;
+  return (2.0 * cube - 3.0 * square + 1.0) * a + (cube - 2.0 * square + u) * slope_a +
+         (3.0 * square - 2.0 * cube) * b + (cube - square) * slope_b;
+}
 
 Eigen::VectorXd through_mode(const Eigen::VectorXd& u, const Mode& mode, double interval_s) {
   if (!(mode.hz > 0.0)) return u;
@@ -182,7 +252,8 @@ Series read_series(const std::string& path, const Config& config, bool skip_bad_
     if (!usable || !estimator.update(sample, motion)) continue;
     motions.push_back(motion);
     time_s.push_back(rows.time_s[i - late]);
-    if (reference.size() == rows.samples.size()) reference_n.push_back(reference[i - late]);
+    if (reference.size() == rows.samples.size())
+      reference_n.push_back(record.force_sign * reference[i - late]);
     if (rows.has_accel) accel_mps2.push_back(rows.accel_mps2[i - late]);
   }
   out.set_motion(motions);
@@ -194,6 +265,7 @@ Series read_series(const std::string& path, const Config& config, bool skip_bad_
         "One sample every {:.4g} s: is time_s in s? If it is in ms: [input.scale] time_s = 0.001",
         out.interval_s));
   centre(out);
+  leave_rest_out(out);
   return out;
 }
 

@@ -13,6 +13,9 @@ namespace dampline::app::rig {
 
 using Mode = core::Mode;
 
+/// Between samples, by a cubic with the slopes of their neighbours; the ends beyond them.
+[[nodiscard]] double between(const Eigen::VectorXd& y, double place);
+
 /// What a mass on a spring makes of a force that acts on it, seen in the spring:
 ///   y'' + 2 D w y' + w^2 y = w^2 u, at rest at the first sample; u straight between samples.
 /// Without a mode it is u.
@@ -38,12 +41,17 @@ struct Series {
   Eigen::VectorXd force_n;
   Eigen::VectorXd reference_n;  ///< another prediction of the force, NaN where there is none; empty
   Eigen::VectorXd accel_mps2;   ///< measured beside the deflection; empty: it is not
-  Eigen::VectorXd left_out;     ///< 1: takes no part in a fit or its error; empty: none
+  Eigen::VectorXd left_out;     ///< not 0: takes no part in a fit or its error; empty: all do
   double noise_m{0.0};          ///< of the deflection, rms
   Mode path;                    ///< that a force passes before it is measured
   double start_m{0.0};          ///< slip of all friction elements at the first sample
 
   [[nodiscard]] Eigen::Index size() const { return force_n.size(); }
+  static constexpr double kRest = 1.0;    ///< left out because it stands still
+  static constexpr double kImpact = 2.0;  ///< because something struck
+  [[nodiscard]] double why_left_out(Eigen::Index i) const {
+    return left_out.size() == size() ? left_out[i] : 0.0;
+  }
   void set_motion(const std::vector<core::Motion>& rows);
 };
 

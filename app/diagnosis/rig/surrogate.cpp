@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
+#include "app/diagnosis/rig/library.hpp"
 #include "app/diagnosis/rig/trials.hpp"
+#include "dampline/numeric/random.hpp"
 #include "dampline/rig/motion.hpp"
 #include "dampline/rig/survey.hpp"
-#include "sim_hw/noise.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -16,6 +19,12 @@ constexpr double kWhole = 0.02;            // a difference is a whole number of 
 constexpr double kMostlyWhole = 0.98;      // of the differences
 constexpr double kFewestStepShare = 1e-6;  // of the range: a finer step is how numbers are printed
 constexpr std::uint64_t kSeed = 1987;
+constexpr std::uint64_t kSensors = 1;  // stream of the seed
+constexpr double kMaybeSign = 0.15;    // rms of v: a narrower law may be the sign in truth
+constexpr double kRepeats = 0.1;       // of the motion's rms, by which periods may differ
+constexpr Eigen::Index kLookedAt = 4000;
+constexpr double kFewestPeriods = 3.0;
+constexpr double kMedianOfNormal = 0.67449;
 
 double rounded(double value, double step) {
   return step > 0.0 ? step * std::round(value / step) : value;
@@ -25,10 +34,63 @@ double white_part(double noise, double step) {
   return std::sqrt(std::max(noise * noise - step * step / 12.0, 0.0));
 }
 
-bool is_sign(const Regressor& column, const Law& law) {
+bool is_friction(const Regressor& column, const Law& law) {
   return std::any_of(law.friction.begin(), law.friction.end(), [&](const Regressor& c) {
     return c.kind == column.kind && c.a == column.a && column.time == c.time;
   });
+}
+
+/// A law no wider than an error of the velocity, or a derivative over corners of the motion, makes
+/// it: in truth it may be the sign.
+bool is_sign(const Regressor& column, const Law& law) {
+  return is_friction(column, law) &&
+         (!is_smooth(column, law.scale) || column.a < kMaybeSign * law.scale.velocity_mps);
+}
+
+/// RMS of white noise that differences of two samples at a period's distance show; infinite where
+/// there is no period.
+double unrepeated(const Eigen::VectorXd& values, double period) {
+  const auto whole = static_cast<Eigen::Index>(std::ceil(period)) + 2;
+  std::vector<double> differences;
+  for (Eigen::Index i = 0; i + whole < values.size(); ++i)
+    differences.push_back(std::abs(between(values, static_cast<double>(i) + period) - values[i]));
+  return median_of(differences) / (kMedianOfNormal * std::numbers::sqrt2);
+}
+
+/// The samples after which the motion repeats; 0: it does not.
+double period_of(const Eigen::VectorXd& x) {
+  const Eigen::Index stride = std::max<Eigen::Index>(1, x.size() / kLookedAt);
+  const double variance = (x.array() - x.mean()).square().mean();
+  const auto most = static_cast<Eigen::Index>(static_cast<double>(x.size()) / kFewestPeriods);
+  const auto off = [&](double period) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (Eigen::Index i = 0; static_cast<double>(i) + period + 2.0 < static_cast<double>(x.size());
+         i += stride, ++count) {
+      const double d = between(x, static_cast<double>(i) + period) - x[i];
+      sum += d * d;
+    }
+    return sum / (count * 2.0 * variance);
+  };
+  const auto off_at = [&](Eigen::Index lag) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (Eigen::Index i = 0; i + lag < x.size(); i += stride, ++count)
+      sum += (x[i + lag] - x[i]) * (x[i + lag] - x[i]);
+    return sum / (count * 2.0 * variance);
+  };
+  bool apart = false;
+  for (Eigen::Index lag = 4; lag < most; ++lag) {
+    const double here = off_at(lag);
+    apart = apart || here > 0.5;
+    if (!apart || here > 4.0 * kRepeats * kRepeats) continue;
+    double best = static_cast<double>(lag);
+    for (double step = 1.0; step > 0.01; step *= 0.5)
+      for (const double at : {best - step, best + step})
+        if (off(at) < off(best)) best = at;
+    if (off(best) < kRepeats * kRepeats) return best;
+  }
+  return 0.0;
 }
 
 /// The measured deflection without what is faster than the derivative sees.
@@ -91,7 +153,7 @@ double left_of(const std::vector<Series>& surrogates, const Law& law) {
   TrialBase base;
   base.ridge = law.ridge;
   for (const Regressor& c : law.columns) {
-    if (is_sign(c, law))
+    if (is_friction(c, law))
       base.friction = law.friction;
     else
       base.columns.push_back(c);
@@ -99,24 +161,29 @@ double left_of(const std::vector<Series>& surrogates, const Law& law) {
   return best_fit(surrogates, base).held_out_nmse;
 }
 
-/// As they are seen: the white part of the force's noise.
-double force_noise(const Series& record, const Eigen::VectorXd& force) {
-  return std::min(white_noise(record.force_n), white_noise(record.force_n - force));
+/// As they are seen: the white part of the force's noise, no more than what periods differ by.
+double force_noise(const Series& record, const Eigen::VectorXd& force, double period) {
+  const double white = std::min(white_noise(record.force_n), white_noise(record.force_n - force));
+  return period > 0.0 ? std::min(white, unrepeated(record.force_n, period)) : white;
 }
 
 /// The record once more: the force that a law makes of a known motion, measured.
 Series surrogate_of(const Series& record, const Series& truth, const Eigen::VectorXd& force,
-                    double force_noise_n, std::uint64_t seed) {
-  sim::Random noise{seed, sim::Stream::kSensors};
+                    double force_noise_n, double period, std::uint64_t seed) {
+  Random noise{seed, kSensors};
   const double step_m = resolution_of(record.deflection_m);
   const double step_n = resolution_of(record.force_n);
-  const double noise_m = white_part(record.noise_m, step_m);
+  const double seen_m = period > 0.0
+                            ? std::min(record.noise_m, unrepeated(record.deflection_m, period))
+                            : record.noise_m;
+  const double noise_m = white_part(seen_m, step_m);
   const double noise_n = white_part(force_noise_n, step_n);
   const double noise_mps = record.config.velocity_measured ? white_noise(record.velocity_mps) : 0.0;
   const double shift_m = step_m * (noise.uniform() - 0.5);  // other roundings than the record's
   core::MotionEstimator estimator{record.config};
   std::vector<core::Motion> motions;
   std::vector<double> time_s;
+  std::vector<double> left_out;
   std::int64_t tick = 0;
   const Eigen::Index late = estimator.latency_samples();
   for (Eigen::Index i = 0; i < record.size(); ++i) {
@@ -131,9 +198,10 @@ Series surrogate_of(const Series& record, const Series& truth, const Eigen::Vect
     if (!estimator.update(sample, motion)) continue;
     motions.push_back(motion);
     time_s.push_back(record.time_s[i - late]);
+    left_out.push_back(record.why_left_out(i - late));
   }
   Series surrogate = record;
-  surrogate.left_out.resize(0);
+  surrogate.left_out = vector_of(left_out);
   surrogate.time_s = vector_of(time_s);
   surrogate.set_motion(motions);
   return surrogate;
@@ -180,8 +248,9 @@ Floor surrogate_floor(const std::vector<Series>& records, const Law& law) {
   for (const Series& record : records) {
     const Series truth = true_motion(record);
     const Eigen::VectorXd force = force_of(law, truth);
-    const double noise_n = force_noise(record, force);
-    surrogates.push_back(surrogate_of(record, truth, force, noise_n, seed++));
+    const double period = period_of(record.deflection_m);
+    const double noise_n = force_noise(record, force, period);
+    surrogates.push_back(surrogate_of(record, truth, force, noise_n, period, seed++));
     if (surrogates.back().size() < record.size() / 2) return out;
     const double variance = (record.force_n.array() - record.force_n.mean()).square().mean();
     noise_nmse += noise_n * noise_n / (variance * static_cast<double>(records.size()));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/diagnosis/rig/explanation.hpp"
+#include "app/diagnosis/rig/library.hpp"
 
 namespace dampline::app::rig {
 
@@ -17,10 +18,11 @@ namespace dampline::app::rig {
 struct Law {
   std::vector<Regressor> columns;
   Eigen::VectorXd theta;
-  /// Columns that are sign v in one way or another: the law has the sign itself, the estimate any
-  /// of `friction`.
+  /// Columns that are sign v in one way or another: a law no wider than an error of the velocity
+  /// has the sign itself, the estimate any of `friction`.
   std::vector<Regressor> friction;
   double ridge{0.0};
+  Scale scale;  ///< of the motion: what is narrower than an error of the velocity is a sign
 };
 
 struct Floor {
@@ -29,7 +31,8 @@ struct Floor {
 };
 /// What the same estimator leaves of the surrogates of all records, which no effect can take away.
 /// A surrogate is the record that the law alone would have made: on the measured motion, smoothed,
-/// measured again with the record's own noise and resolution.
+/// measured again with the record's own noise and resolution; noise is
+/// no more than what periods of the motion differ by.
 [[nodiscard]] Floor surrogate_floor(const std::vector<Series>& records, const Law& law);
 
 }  // namespace dampline::app::rig

@@ -34,23 +34,6 @@ Fit skewed_fit(const std::vector<Series>& records, const TrialBase& base, double
   return best_fit(moved, base);
 }
 
-double between(const Eigen::VectorXd& y, double place) {
-  const auto last = static_cast<double>(y.size() - 1);
-  const double at = std::clamp(place, 0.0, last);
-  const auto i = std::min(static_cast<Eigen::Index>(at), y.size() - 2);
-  const double u = at - static_cast<double>(i);
-  const double before = y[std::max<Eigen::Index>(i - 1, 0)];
-  const double after = y[std::min(i + 2, y.size() - 1)];
-  const double a = y[i];
-  const double b = y[i + 1];
-  const double slope_a = 0.5 * (b - before);
-  const double slope_b = 0.5 * (after - a);
-  const double square = u * u;
-  const double cube = square * u;
-  return (2.0 * cube - 3.0 * square + 1.0) * a + (cube - 2.0 * square + u) * slope_a +
-         (3.0 * square - 2.0 * cube) * b + (cube - square) * slope_b;
-}
-
 const char* drift_name(const Regressor& column) {
   switch (column.kind) {
     case Kind::kVelocity:
@@ -94,7 +77,7 @@ struct Best {
 
 /// Lagrange's polynomial through the six samples about i - 1 + part / parts; a straight line at the
 /// ends.
-double between(const Eigen::VectorXd& x, Eigen::Index i, int part, int parts) {
+double between_parts(const Eigen::VectorXd& x, Eigen::Index i, int part, int parts) {
   const double u = static_cast<double>(part) / parts;
   if (i < 3 || i + 2 >= x.size()) return x[i - 1] + u * (x[i] - x[i - 1]);
   double sum = 0.0;
@@ -140,24 +123,6 @@ bool move(const std::vector<Series>& records, const TrialBase& base, double rati
       columns.push_back({from.kind, times * from.a, from.b + more});
   look(records, base, columns, best);
   return best.fit.held_out_nmse < kWorthwhile * before;
-}
-
-/// Deviations from the fits a step to either side of what was found.
-BoucWen with_deviations(const std::vector<Series>& records, const TrialBase& base,
-                        const Best& best) {
-  constexpr double kStep = 0.05;
-  const Regressor& at = best.column;
-  const double travel_step_m = kStep * at.a;
-  const TrialFits fits{records,
-                       base,
-                       {at,
-                        {at.kind, at.a - travel_step_m, at.b},
-                        {at.kind, at.a + travel_step_m, at.b},
-                        {at.kind, at.a, at.b - kStep},
-                        {at.kind, at.a, at.b + kStep}}};
-  const Fit middle = fits.best({0});
-  return {at, middle, deviation_of(fits.best({1}), middle, fits.best({2}), travel_step_m),
-          deviation_of(fits.best({3}), middle, fits.best({4}), kStep)};
 }
 
 }  // namespace
@@ -259,28 +224,6 @@ std::optional<Trial> try_skew(const std::vector<Series>& records, const TrialBas
   return best;
 }
 
-double skew_deviation(const std::vector<Series>& records, const TrialBase& base, double skew_s) {
-  const double step_s = 0.2 * records.front().interval_s;
-  const Fit low = skewed_fit(records, base, skew_s - step_s);
-  const Fit middle = skewed_fit(records, base, skew_s);
-  const Fit high = skewed_fit(records, base, skew_s + step_s);
-  return deviation_of(low, middle, high, step_s);
-}
-
-double deviation_of(const Fit& low, const Fit& middle, const Fit& high, double step) {
-  if (!low.ok || !middle.ok || !high.ok) return step;
-  const double curve = high.held_out_nmse - 2.0 * middle.held_out_nmse + low.held_out_nmse;
-  if (!(curve > 0.0)) return step;
-  const auto n = static_cast<double>(middle.block_error.size());
-  double squares = 0.0;
-  const double mean = 0.5 * (high.held_out_nmse - low.held_out_nmse);
-  for (std::size_t b = 0; b < middle.block_error.size(); ++b) {
-    const double slope = 0.5 * (high.block_error[b] - low.block_error[b]) - mean;
-    squares += slope * slope;
-  }
-  return step * std::sqrt(squares / (n * (n - 1.0))) / curve;
-}
-
 std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBase& base) {
   const std::vector<Drifting> drifting = what_may_drift(records, base);
   std::vector<Regressor> columns;
@@ -331,7 +274,7 @@ Eigen::VectorXd bouc_wen(const Eigen::VectorXd& deflection_m, double travel_m, d
         static_cast<int>(std::ceil(std::abs(whole_m) / (kLongestStep * travel_m))), 1, kMostParts);
     double from_m = deflection_m[i - 1];
     for (int p = 1; p <= parts; ++p) {
-      const double to_m = p < parts ? between(deflection_m, i, p, parts) : deflection_m[i];
+      const double to_m = p < parts ? between_parts(deflection_m, i, p, parts) : deflection_m[i];
       move(to_m - from_m);
       from_m = to_m;
     }
@@ -357,7 +300,7 @@ std::optional<BoucWen> best_bouc_wen(const std::vector<Series>& records, const T
     ratio = std::sqrt(ratio);
     step *= 0.5;
   }
-  return with_deviations(records, base, best);
+  return BoucWen{best.column, best.fit};
 }
 
 }  // namespace dampline::app::rig

@@ -54,7 +54,8 @@ struct Trial {
   double skew_s{0.0};              ///< the force is late by this
   std::string parameter;           ///< what drifts
   Mode mode;                       ///< unmodelled_mode; without columns the force passes it
-  double at_share{-1.0};           ///< of the record, where it changes at once; -1: slowly
+  double at_share{-1.0};           ///< of the record, where it changes at once; -1: otherwise
+  std::vector<Change> changes;     ///< of a friction with memory
 
   /// Takes the fit and what it is worth.
   void judge(const Fit& without, const Fit& with) {
@@ -70,13 +71,6 @@ struct Trial {
 /// Force and motion out of step by an eighth to twelve samples.
 [[nodiscard]] std::optional<Trial> try_skew(const std::vector<Series>& records,
                                             const TrialBase& base);
-/// Standard deviation of a skew, by the jackknife over the blocks.
-[[nodiscard]] double skew_deviation(const std::vector<Series>& records, const TrialBase& base,
-                                    double skew_s);
-/// Standard deviation of what one parameter is, from the fits a step below it, at it and above; the
-/// step where one of them failed.
-[[nodiscard]] double deviation_of(const Fit& low, const Fit& middle, const Fit& high, double step);
-
 /// A mass on a spring that stands on what moves, its resonance as high as one that moves along
 /// still shows.
 [[nodiscard]] std::optional<Trial> try_attached(const std::vector<Series>& records,
@@ -85,10 +79,6 @@ struct Trial {
 /// lags is no mode.
 [[nodiscard]] std::optional<Trial> try_path(const std::vector<Series>& records,
                                             const TrialBase& base);
-/// Standard deviations of a mode's two parameters.
-[[nodiscard]] Mode mode_deviation(const std::vector<Series>& records, const TrialBase& base,
-                                  const Trial& trial);
-
 /// The friction, the viscous part or the spring changes over the record: evenly, or at once.
 [[nodiscard]] std::optional<Trial> try_drift(const std::vector<Series>& records,
                                              const TrialBase& base);
@@ -105,8 +95,6 @@ struct Trial {
 struct BoucWen {
   Regressor column;
   Fit fit;
-  double travel_std_m{0.0};
-  double shape_std{0.0};
 };
 
 /// The one that leaves least beside a base; nothing where none helps.
