@@ -44,7 +44,8 @@ class Disk {
   }
   void empty() const { fs::remove(place_ / "ballast"); }
   void read_only(bool on) const {
-    ::mount("tmpfs", place_.c_str(), "tmpfs", MS_REMOUNT | (on ? MS_RDONLY : 0U), "size=4m");
+    const unsigned long access = on ? static_cast<unsigned long>(MS_RDONLY) : 0UL;
+    ::mount("tmpfs", place_.c_str(), "tmpfs", MS_REMOUNT | access, "size=4m");
   }
 
  private:

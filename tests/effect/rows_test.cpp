@@ -39,7 +39,7 @@ class HarmonicRows : public testing::Test {
     return sum;
   }
 
-  RawRing raw_{kRateHz};
+  RawRing raw_{kRateHz, 0.0, false};
   Rows rows_{kRateHz};
 };
 
