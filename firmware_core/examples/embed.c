@@ -7,7 +7,7 @@
 
 static union {
   long double aligned;
-  unsigned char bytes[1440000]; /* at least dampline_size() */
+  unsigned char bytes[1600000]; /* at least dampline_size() */
 } memory;
 static const double range_mps2[DAMPLINE_CHANNELS] = {49.03325, 98.0665, 98.0665};
 

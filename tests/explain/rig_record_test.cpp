@@ -48,7 +48,7 @@ std::string text_of(const std::vector<StoredRow>& rows, double force = 1.0, doub
 
 std::vector<std::string> effects_of(const Explanation& found) {
   std::vector<std::string> out;
-  for (const app::rig::Step& s : found.steps) out.push_back(s.effect);
+  for (const app::Step& s : found.steps) out.push_back(s.effect);
   return out;
 }
 

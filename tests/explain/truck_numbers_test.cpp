@@ -9,7 +9,7 @@
 #include <string>
 
 #include "app/diagnosis/truck/explain.hpp"
-#include "app/diagnosis/truck/explanation_json.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "sim_hw/simulation.hpp"
 #include "tests/drivers/temporary_file.hpp"
 #include "tests/explain/coverage.hpp"
