@@ -121,8 +121,8 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
   std::string body = opening(result);
   body += section("Damping curve",
                   figure(plot_curve(result), "curve",
-                                std::string{truck ? kCurveText : kRigCurveText}.append(
-                                    result.trust == Trust::kTrusted ? kBandHolds : kBandDoesNot)));
+                         std::string{truck ? kCurveText : kRigCurveText}.append(
+                             result.trust == Trust::kTrusted ? kBandHolds : kBandDoesNot)));
   body += section("Parameters", parameter_section(result)) +
           section("The model before", base_section(result));
   body += section("Quality", quality_section(result));
