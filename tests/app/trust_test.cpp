@@ -31,7 +31,9 @@ class Trusting : public testing::Test {
  protected:
   void simulate(const std::string& more = "--seed 31") const {
     ASSERT_EQ(
-        program_.run("simulate --duration 120 --quiet --out run.csv --config-out car.toml " + more)
+        program_
+            .run("simulate --duration 120 --quiet --force --out run.csv --config-out car.toml " +
+                 more)
             .code,
         0);
   }
