@@ -40,7 +40,9 @@ TEST_P(AssemblerForEachCounter, JumpsTheTickOverAGapOfAllChannels) {
   ASSERT_EQ(samples.size(), 2300U);
   EXPECT_EQ(wrong_samples(samples, 0), 0);
   EXPECT_EQ(samples[1000].tick - samples[999].tick, 701);
-  for (const ChannelCounts& channel : assembler_.counts().channels) {
+  const AssemblerCounts counts = assembler_.counts();
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const ChannelCounts& channel = counts.channels[c];
     EXPECT_EQ(channel.gaps, 1U);
     EXPECT_EQ(channel.lost, 700U);
   }
@@ -67,7 +69,9 @@ TEST_P(AssemblerForEachCounter, LosesOnlyTheInstantsOfLostFrames) {
             std::count(whole.begin(), whole.end(), true));
   EXPECT_EQ(wrong_samples(samples, 0), 0);
   EXPECT_EQ(assembler_.counts().incomplete, partial);
-  for (const ChannelCounts& channel : assembler_.counts().channels) {
+  const AssemblerCounts counts = assembler_.counts();
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const ChannelCounts& channel = counts.channels[c];
     EXPECT_EQ(channel.readings + channel.lost, 20000U);
   }
 }

@@ -69,6 +69,7 @@ TEST_F(SimulateVerb, ChoosesCsvByTheSuffix) {
 
 TEST_F(SimulateVerb, WritesTheSameBytesForTheSameSeed) {
   SimulateOptions o = options("a.log");
+  o.force = true;
   ASSERT_EQ(simulate(o), 0);
   const std::string first = content(o.out);
   ASSERT_EQ(simulate(o), 0);
@@ -166,6 +167,7 @@ TEST_F(SimulateVerb, ReportsAFullDiskAndAMissingFolder) {
 TEST_F(SimulateVerb, SimulatesEitherTruckOfAWholeCar) {
   SimulateOptions o = options("a.csv");
   o.truth = (folder_ / "truth.csv").string();
+  o.force = true;
   std::vector<std::string> records;
   for (const std::string vehicle : {"", "leading", "trailing"}) {
     o.vehicle = vehicle;
@@ -181,6 +183,7 @@ TEST_F(SimulateVerb, SimulatesEitherTruckOfAWholeCar) {
 TEST_F(SimulateVerb, WritesTheMassThatMovesWithOneTruckOfAWholeCar) {
   SimulateOptions o = options("a.csv");
   o.config = (folder_ / "car.toml").string();
+  o.force = true;
   ASSERT_EQ(simulate(o), 0);
   EXPECT_THAT(content(o.config), HasSubstr("moving_mass_kg = 37200.0\n"));
   o.vehicle = "leading";
