@@ -229,13 +229,15 @@ void BasicEstimator<Kind>::take_velocity(std::int64_t n, double velocity_mps,
 
 /// Sample n, which is law_lag() behind the newest velocity: the frame's turn is known now.
 template <class Kind>
-void BasicEstimator<Kind>::take_turned(std::int64_t n) noexcept requires(kHasMotion) {
-  const double velocity_mps = velocity_mps_[history(n)];
-  auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
-  const Turn turn = turn_.mean(n, velocity_mps);
-  columns[kTurnSpringLane] = static_cast<float>(turn.spring_m);
-  columns[kTurnPushLane] = static_cast<float>(pitch_share_ * turn.push_mps2);
-  take_law(n, columns, still_[history(n)]);
+void BasicEstimator<Kind>::take_turned([[maybe_unused]] std::int64_t n) noexcept {
+  if constexpr (kHasMotion) {
+    const double velocity_mps = velocity_mps_[history(n)];
+    auto columns = average_.update(law_, velocity_mps, accel_mps2_[history(n)], step_s_);
+    const Turn turn = turn_.mean(n, velocity_mps);
+    columns[kTurnSpringLane] = static_cast<float>(turn.spring_m);
+    columns[kTurnPushLane] = static_cast<float>(pitch_share_ * turn.push_mps2);
+    take_law(n, columns, still_[history(n)]);
+  }
 }
 
 template <class Kind>
@@ -248,20 +250,24 @@ void BasicEstimator<Kind>::take_law(std::int64_t n, LawColumns::Lanes columns,
 }
 
 template <class Kind>
-void BasicEstimator<Kind>::take_motion(std::int64_t n, double velocity_mps, bool still,
-                                       UpdateResult& result) noexcept requires(kHasMotion) {
-  velocity_mps_[history(n)] = velocity_mps;
-  still_[history(n)] = still;
-  double deflection_m = 0.0;
-  if (!deflection_.update(velocity_mps, deflection_m)) return;
-  const std::int64_t then = n - deflection_.delay();
-  result.has_motion = true;
-  result.motion = {.tick = stretch_tick_ + then,
-                   .deflection_m = deflection_m,
-                   .velocity_mps = velocity_mps_[history(then)],
-                   .frame_mps2 = rows_.frame_mps2(then),
-                   .relative_mps2 = rows_.relative_mps2(then),
-                   .still = still_[history(then)]};
+void BasicEstimator<Kind>::take_motion([[maybe_unused]] std::int64_t n,
+                                       [[maybe_unused]] double velocity_mps,
+                                       [[maybe_unused]] bool still,
+                                       [[maybe_unused]] UpdateResult& result) noexcept {
+  if constexpr (kHasMotion) {
+    velocity_mps_[history(n)] = velocity_mps;
+    still_[history(n)] = still;
+    double deflection_m = 0.0;
+    if (!deflection_.update(velocity_mps, deflection_m)) return;
+    const std::int64_t then = n - deflection_.delay();
+    result.has_motion = true;
+    result.motion = {.tick = stretch_tick_ + then,
+                     .deflection_m = deflection_m,
+                     .velocity_mps = velocity_mps_[history(then)],
+                     .frame_mps2 = rows_.frame_mps2(then),
+                     .relative_mps2 = rows_.relative_mps2(then),
+                     .still = still_[history(then)]};
+  }
 }
 
 template <class Kind>

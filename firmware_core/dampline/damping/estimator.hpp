@@ -78,7 +78,18 @@ class BasicEstimator {
   [[nodiscard]] Level level() noexcept;
 
   /// The sufficient statistics so far. `out` is some 270 KiB: place it yourself.
-  void export_statistics(Statistics& out) noexcept requires(kHasStatistics);
+  void export_statistics([[maybe_unused]] Statistics& out) noexcept requires(kHasStatistics) {
+    if constexpr (kHasStatistics) {  // clang 14 compiles what is not wanted, too
+      store_.finish();
+      out.header = header();
+      store_.total_to(out.total);
+      std::array<const ScaleFactors*, kEntries> entries{};
+      const std::size_t count = store_.entries_to(entries);
+      for (std::size_t i = 0; i < count; ++i) out.entries[i] = *entries[i];
+      for (std::size_t i = count; i < kEntries; ++i) out.entries[i].clear();
+      out.header.entry_count = static_cast<std::uint32_t>(count);
+    }
+  }
   /// The sums over all blocks alone, some 9 KiB.
   void export_total(ScaleFactors& out) noexcept {
     store_.summed_up([&out](const ScaleFactors& total, auto /*entries*/) { out = total; });
@@ -89,7 +100,10 @@ class BasicEstimator {
 
   /// From a sample to its velocity, to its Motion, and to the last row that it is the centre of.
   [[nodiscard]] double velocity_latency_s() const noexcept;
-  [[nodiscard]] double motion_latency_s() const noexcept requires(kHasMotion);
+  [[nodiscard]] double motion_latency_s() const noexcept requires(kHasMotion) {
+    if constexpr (kHasMotion) return velocity_latency_s() + deflection_.delay() * step_s_;
+    return 0.0;
+  }
   [[nodiscard]] double row_latency_s() const noexcept;
 
   [[nodiscard]] const EstimatorConfig& config() const noexcept { return config_; }
@@ -104,8 +118,7 @@ class BasicEstimator {
   using OfMotion = std::conditional_t<kHasMotion, T, None>;
 
   void take(const Screened& screened, UpdateResult& result) noexcept;
-  void take_motion(std::int64_t n, double velocity_mps, bool still, UpdateResult& result) noexcept
-      requires(kHasMotion);
+  void take_motion(std::int64_t n, double velocity_mps, bool still, UpdateResult& result) noexcept;
   void count_fault(Verdict verdict, std::int64_t block) noexcept;
   void take_gap(std::int64_t tick) noexcept;
   void start_stretch(std::int64_t tick) noexcept;
@@ -114,7 +127,7 @@ class BasicEstimator {
   void take_velocity(std::int64_t n, double velocity_mps, UpdateResult& result) noexcept;
   void set_corner(Baseline::Corner corner) noexcept;
   void take_law(std::int64_t n, LawColumns::Lanes columns, bool still) noexcept;
-  void take_turned(std::int64_t n) noexcept requires(kHasMotion);
+  void take_turned(std::int64_t n) noexcept;
   void count_velocity(double velocity_mps, bool still) noexcept;
   void begin_raster(std::int64_t first_law) noexcept;
   void build_rows(std::int64_t newest) noexcept;

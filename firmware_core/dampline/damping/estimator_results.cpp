@@ -55,18 +55,6 @@ Level BasicEstimator<Kind>::level() noexcept {
 }
 
 template <class Kind>
-void BasicEstimator<Kind>::export_statistics(Statistics& out) noexcept requires(kHasStatistics) {
-  store_.finish();
-  out.header = header();
-  store_.total_to(out.total);
-  std::array<const ScaleFactors*, kEntries> entries{};
-  const std::size_t count = store_.entries_to(entries);
-  for (std::size_t i = 0; i < count; ++i) out.entries[i] = *entries[i];
-  for (std::size_t i = count; i < kEntries; ++i) out.entries[i].clear();
-  out.header.entry_count = static_cast<std::uint32_t>(count);
-}
-
-template <class Kind>
 void BasicEstimator<Kind>::clear_statistics() noexcept {
   store_.clear();
   velocity_counts_ = {};
@@ -77,11 +65,6 @@ template <class Kind>
 double BasicEstimator<Kind>::velocity_latency_s() const noexcept {
   return static_cast<double>(velocity_delay() + static_cast<std::int64_t>(screen_.delay())) *
          step_s_;
-}
-
-template <class Kind>
-double BasicEstimator<Kind>::motion_latency_s() const noexcept requires(kHasMotion) {
-  return velocity_latency_s() + deflection_.delay() * step_s_;
 }
 
 template <class Kind>
