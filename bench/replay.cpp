@@ -86,8 +86,8 @@ void replay_file(const std::string& program, const fs::path& folder, int minutes
   const std::string dbc = (folder / "sensors.dbc").string();
   const std::string place = (folder / fmt::format("run{}", minutes)).string();
   const Usage made = run(fmt::format(
-      "exec '{}' simulate --quiet --force --duration {} --out '{}' --dbc '{}' --config-out '{}'", program,
-      60 * minutes, log, dbc, config));
+      "exec '{}' simulate --quiet --force --duration {} --out '{}' --dbc '{}' --config-out '{}'",
+      program, 60 * minutes, log, dbc, config));
   if (!made.ok) return fmt::print("could not simulate with {}\n", program);
   const auto canplayer = [&](const char* to) {
     return fmt::format("LD_PRELOAD='{}' exec canplayer -t -I '{}' {}=can0 >/dev/null",

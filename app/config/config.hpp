@@ -61,7 +61,7 @@ struct InputConfig {
 };
 
 struct ModelConfig {
-  std::vector<std::string> base{"coulomb"};    ///< effect names beside the linear spring
+  std::vector<std::string> base{"coulomb"};  ///< effect names beside the linear spring
   bool base_is_set{false};  ///< by the configuration; of a rig the record tells otherwise
   std::vector<std::string> candidates{"all"};  ///< effect names, or "all"
   std::string inertia{

@@ -27,14 +27,14 @@ TextFile::TextFile(std::string path, bool replace) : path_(std::move(path)), rep
   std::error_code ignored;
   const std::filesystem::file_status there = std::filesystem::status(path_, ignored);
   // Devices, pipes and /dev/stdout are written to; a file is replaced, when it is whole.
-  const bool direct = std::filesystem::exists(there) && (!std::filesystem::is_regular_file(there) ||
-                                                         path_.starts_with("/dev/"));
+  const bool direct = std::filesystem::exists(there) &&
+                      (!std::filesystem::is_regular_file(there) || path_.starts_with("/dev/"));
   if (!direct && !replace_ && std::filesystem::exists(there))
     throw UsageError(fmt::format("{}: exists already; --force replaces it", path_));
   if (!direct) staged_ = (std::filesystem::path{path_}.parent_path() / partial_name()).string();
-  file_ = direct ? ::open(path_.c_str(), O_WRONLY | O_CLOEXEC)
-                 : ::open(staged_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-                          kMode);
+  file_ =
+      direct ? ::open(path_.c_str(), O_WRONLY | O_CLOEXEC)
+             : ::open(staged_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
   if (file_ < 0) fail("cannot be opened for writing");
 }
 

@@ -15,8 +15,8 @@ namespace dampline::app {
 /// A file appears whole, when it is closed.
 class TextFile {
  public:
-  /// Throws UsageError where the file exists and is not to be replaced, RunError naming the file and
-  /// the reason.
+  /// Throws UsageError where the file exists and is not to be replaced, RunError naming the file
+  /// and the reason.
   TextFile(std::string path, bool replace);
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;

@@ -98,7 +98,11 @@ void expect_nothing_lost(const Plan& plan, const Day& day) {
   EXPECT_TRUE(live.at("memory_locked"));
   EXPECT_EQ(live.at("minor_faults"), 0);
   EXPECT_EQ(live.at("major_faults"), 0);
-  for (const std::uint64_t kib : day.memory_kib) EXPECT_EQ(kib, day.memory_kib.front());
+  // The explainer's first allocation, when it first has something to explain, reserves the
+  // addresses of an arena of its own; nothing else grows.
+  constexpr std::uint64_t kArenaKib = 65536;
+  for (const std::uint64_t kib : day.memory_kib)
+    EXPECT_TRUE(kib == day.memory_kib.front() || kib == day.memory_kib.front() + kArenaKib) << kib;
 }
 
 // Within the bounds that the README states for a fresh 300 s, at all times after a standstill.

@@ -40,8 +40,9 @@ void run(const std::string& command) {
 
 Profile profile_log(const Verb& verb, std::int64_t seconds, const std::string& folder) {
   const std::string log = fmt::format("{}/{}", folder, seconds);
-  run(fmt::format("{} simulate --quiet --force --seed 1 --duration {} --out {}.log --config-out {}.toml",
-                  DAMPLINE_PROGRAM, seconds, log, log));
+  run(fmt::format(
+      "{} simulate --quiet --force --seed 1 --duration {} --out {}.log --config-out {}.toml",
+      DAMPLINE_PROGRAM, seconds, log, log));
   return profile_of(fmt::format("{} {} {}.log --config {}.toml --out {}.run --no-report",
                                 DAMPLINE_PROGRAM, verb.name, log, log, log),
                     log + ".profile");

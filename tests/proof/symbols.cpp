@@ -29,7 +29,7 @@ constexpr const char* kHarmless =
     "_GLOBAL_OFFSET_TABLE_ __cpu_indicator_init __cpu_model abort __divdc3 __muldc3 memcmp memcpy "
     "memmove memset "
     "acos asin atan atan2 cbrt ceil cos cosh erf erfc exp exp2 expm1 floor fma fmax fmin "
-    "fmod frexp hypot ldexp lgamma llround log log10 log1p log2 lround nearbyint pow "
+    "fmod frexp hypot ldexp lgamma llround log log10 log1p log2 lround lroundf nearbyint pow "
     "remainder rint round scalbn sin sincos sinh sqrt tan tanh tgamma trunc ";
 
 std::set<std::string> words(const std::string& text) {

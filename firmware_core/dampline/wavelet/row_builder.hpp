@@ -49,7 +49,7 @@ class LawRing {
     for (int i = 0; i < LawColumns::kLanes; ++i)
       if constexpr (kIsWhole)
         out[static_cast<std::size_t>(i)] =
-            static_cast<Number>(std::lround(double{std::clamp(lanes[i] / step(i), -kMost, kMost)}));
+            static_cast<Number>(std::lround(std::clamp(lanes[i] / step(i), -kMost, kMost)));
       else
         out[static_cast<std::size_t>(i)] = lanes[i];
     return out;
