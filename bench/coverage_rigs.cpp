@@ -182,7 +182,7 @@ void study(const System& system, int records) {
     const app::rig::Explanation found =
         app::rig::explain(seen.config, {{file.string()}, {}, "", false});
     std::string name;
-    for (const app::rig::Step& s : found.steps) name += (name.empty() ? "" : "+") + s.effect;
+    for (const app::Step& s : found.steps) name += (name.empty() ? "" : "+") + s.effect;
     ++names[name.empty() ? found.verdict() : name];
     for (const app::Parameter& p : found.final.parameters) {
       const auto truth = system.truth.find(p.name);

@@ -6,6 +6,7 @@
 
 #include "app/diagnosis/rig/explanation.hpp"
 #include "app/diagnosis/rig/library.hpp"
+#include "app/diagnosis/rig/trials.hpp"
 
 namespace dampline::app::rig {
 
