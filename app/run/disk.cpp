@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <stdio.h>  // renameat2()
 #include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
@@ -11,6 +10,7 @@
 
 #include <cerrno>
 #include <cstdint>
+#include <cstdio>  // renameat2()
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -129,6 +129,7 @@ void remove_stale(const fs::path& parent, const std::string& stem) noexcept {
   }
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): as deep as the tree
 bool link_tree(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (fs::is_directory(fs::symlink_status(from, error)) && !error) {

@@ -49,7 +49,8 @@ double number(std::string_view cell) {
 /// A number that the integer type can hold; what is behind its point goes.
 template <class Integer>
 Integer integer(std::string_view cell) {
-  constexpr double kBeyond = 2.0 * static_cast<double>(std::numeric_limits<Integer>::max() / 2 + 1);
+  constexpr Integer kHalf = std::numeric_limits<Integer>::max() / 2 + 1;
+  constexpr double kBeyond = 2.0 * static_cast<double>(kHalf);
   const double value = number(cell);
   if (!(value >= static_cast<double>(std::numeric_limits<Integer>::min()) && value < kBeyond))
     throw RunError{fmt::format("{} is out of range", drivers::quote(cell))};

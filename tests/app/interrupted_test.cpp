@@ -24,7 +24,7 @@
 namespace dampline::app {
 namespace {
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && !defined(DAMPLINE_SANITIZED)
 
 namespace fs = std::filesystem;
 

@@ -176,7 +176,7 @@ Explained look_for(Config config, const ExplainOptions& options) {
   config.model.base_is_set = out.config.model.base_is_set;
   out.explanation = search(config, out.records, is_base_declared(out.config.model));
   if (chosen)
-    out.explanation.notes.push_back(
+    out.explanation.notes.emplace_back(
         "Nobody declared a base: the record bears out what stands there. To fix it: [model] base");
   return out;
 }

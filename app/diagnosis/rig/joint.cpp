@@ -116,7 +116,7 @@ std::vector<Eigen::VectorXd> forces_at(Model model, std::vector<Series> records,
   move(p, by, model, records);
   std::vector<Eigen::VectorXd> out;
   for (const Equations& e : equations_of(model.columns, records))
-    out.push_back(e.values.leftCols(model.fit.theta.size()) * model.fit.theta);
+    out.emplace_back(e.values.leftCols(model.fit.theta.size()) * model.fit.theta);
   return out;
 }
 
@@ -149,7 +149,7 @@ void insert_changes(const Model& model, const std::vector<Change>& changes,
           sides.col(side + 1) += model.fit.theta[static_cast<Eigen::Index>(c)] *
                                  e.values.col(static_cast<Eigen::Index>(c));
     Eigen::MatrixXd more{e.values.rows(), static_cast<Eigen::Index>(changes.size())};
-    const double whole = static_cast<double>(records[r].size() - 1);
+    const auto whole = static_cast<double>(records[r].size() - 1);
     for (Eigen::Index i = 0; i < more.rows(); ++i)
       for (std::size_t k = 0; k < changes.size(); ++k)
         more(i, static_cast<Eigen::Index>(k)) =
@@ -253,7 +253,7 @@ bool is_friction_like(const Regressor& column) noexcept {
 }
 
 int side_of(const Regressor& column) noexcept {
-  constexpr double kMiddle = (Regressor::kHats - 1) / 2;
+  constexpr double kMiddle = 0.5 * (Regressor::kHats - 1);
   switch (column.kind) {
     case Kind::kGapUp:
       return 1;

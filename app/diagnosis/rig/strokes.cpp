@@ -69,6 +69,7 @@ std::vector<Stroke> like_ones(std::vector<Stroke> strokes) {
   for (const Stroke& s : strokes) longest_m = std::max(longest_m, s.length_m);
   std::erase_if(strokes, [&](const Stroke& s) { return s.length_m < kTrembling * longest_m; });
   std::vector<double> lengths;
+  lengths.reserve(strokes.size());
   for (const Stroke& s : strokes) lengths.push_back(s.length_m);
   if (lengths.size() < kFewestStrokes) return {};
   std::sort(lengths.begin(), lengths.end());

@@ -84,7 +84,7 @@ double period_of(const Eigen::VectorXd& x) {
     const double here = off_at(lag);
     apart = apart || here > 0.5;
     if (!apart || here > 4.0 * kRepeats * kRepeats) continue;
-    double best = static_cast<double>(lag);
+    auto best = static_cast<double>(lag);
     for (double step = 1.0; step > 0.01; step *= 0.5)
       for (const double at : {best - step, best + step})
         if (off(at) < off(best)) best = at;

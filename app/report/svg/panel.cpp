@@ -35,7 +35,7 @@ double width_of(std::string_view text) {
 }
 
 std::string text_at(double x, double y, std::string_view text, std::string_view anchor = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>", x, y,
+  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}"{}>{}</text>)", x, y,
                      anchor.empty() ? "" : fmt::format(" text-anchor=\"{}\"", anchor),
                      escape_html(text));
 }
@@ -156,10 +156,10 @@ std::string Panel::legend(const Frame& frame) const {
     const Frame::Legend& place = frame.legend.at(i++);
     const double y = first + kRow * place.row;
     const bool drawn = mark.shape == Shape::kLine;
-    out += fmt::format("<path class=\"{}\" d=\"M{:.1f} {:.1f}h18\" stroke=\"currentColor\"",
+    out += fmt::format(R"(<path class="{}" d="M{:.1f} {:.1f}h18" stroke="currentColor")",
                        name_of(mark.stroke.ink), place.x, y - 5.0);
     out += drawn ? dash(mark.stroke)
-                 : fmt::format(" stroke-width=\"{}\" stroke-opacity=\"{}\"",
+                 : fmt::format(R"( stroke-width="{}" stroke-opacity="{}")",
                                mark.shape == Shape::kDots ? 5 : 10, mark.opacity);
     out += "/>" + text_at(place.x + kSwatch, y, mark.name);
   };
@@ -187,8 +187,8 @@ std::string Panel::axes(const Frame& f) const {
         0.5 * (f.top + f.bottom), escape_html(y_.label));
   if (!title_.empty()) texts += text_at(f.left, 16.0, title_);
   return fmt::format(
-      "<path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>{}",
-      grid, f.left, f.top, f.bottom, f.right, texts);
+      R"(<path class="grid" d="{}"/><path class="axis" d="M{:.1f} {:.1f}V{:.1f}H{:.1f}"/>{})", grid,
+      f.left, f.top, f.bottom, f.right, texts);
 }
 
 std::string Panel::lanes(const Frame& f) const {
@@ -215,10 +215,10 @@ std::string Panel::marks(const Frame& f) const {
     if (path.empty()) continue;
     const bool filled = mark.shape == Shape::kArea || mark.shape == Shape::kBoxes;
     const std::string paint =
-        filled ? fmt::format("fill=\"currentColor\" fill-opacity=\"{:.2f}\"", mark.opacity)
-               : fmt::format("fill=\"none\" stroke=\"currentColor\"{}{}", dash(mark.stroke),
+        filled ? fmt::format(R"(fill="currentColor" fill-opacity="{:.2f}")", mark.opacity)
+               : fmt::format(R"(fill="none" stroke="currentColor"{}{})", dash(mark.stroke),
                              mark.shape == Shape::kDots ? " stroke-linecap=\"round\"" : "");
-    out += fmt::format("<path class=\"{}\" {} d=\"{}\"/>", name_of(mark.stroke.ink), paint, path);
+    out += fmt::format(R"(<path class="{}" {} d="{}"/>)", name_of(mark.stroke.ink), paint, path);
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dampline::app::svg {
@@ -23,9 +24,10 @@ double tick_step(double width) {
 }
 
 std::string power_of_ten(int exponent) {
-  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  constexpr std::array kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string out = exponent < 0 ? "10⁻" : "10";
-  for (const char digit : fmt::format("{}", std::abs(exponent))) out += kDigits[digit - '0'];
+  for (const char digit : fmt::format("{}", std::abs(exponent)))
+    out += kDigits.at(static_cast<std::size_t>(digit - '0'));
   return out;
 }
 
