@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace dampline {
 
@@ -30,7 +31,49 @@ SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
   }
 }
 
-void SampleAssembler::push(const CanFrame& frame) noexcept {
+template <class Count>
+bool SampleAssembler::waits(Count lanes) const noexcept {
+  for (std::size_t c = lanes; c-- > 0;)
+    if (lanes_[c].newest() - lane_offset_[c] < next_tick_) return true;
+  return false;
+}
+
+template <class Count>
+std::size_t SampleAssembler::find_all(Count lanes, std::int64_t tick,
+                                      Readings& readings) const noexcept {
+  std::size_t channels = 0;
+  for (std::size_t c = 0; c < lanes; ++c) {
+    readings[c] = find(c, tick);
+    channels += readings[c] != nullptr ? 1U : 0U;
+  }
+  return channels;
+}
+
+template <class Count>
+void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
+  if (ready_count_ == kReady) {
+    ++counts_.overflow;
+    return;
+  }
+  Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
+  sample.tick = next_tick_;
+  sample.time_ns = readings[0]->time_ns;
+  unsigned saturated = 0;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    sample.accel_mps2[c] = readings[c]->accel_mps2;
+    saturated |= unsigned{readings[c]->saturated} << c;
+  }
+  for (std::size_t c = kChannels; c < lanes; ++c) {
+    sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(readings[c]->accel_mps2);
+    saturated |= unsigned{readings[c]->saturated} << c;
+  }
+  sample.saturated = static_cast<std::uint8_t>(saturated);
+  ++counts_.samples;
+  meter_.update(sample.tick, sample.time_ns);
+}
+
+template <class Count>
+void SampleAssembler::push_among(Count lanes, const CanFrame& frame) noexcept {
   ++counts_.frames;
   if (frame.error) {
     ++counts_.error;
@@ -38,7 +81,7 @@ void SampleAssembler::push(const CanFrame& frame) noexcept {
   }
   bool wanted = false;
   bool far = false;
-  for (std::size_t c = 0; c < count_; ++c) {
+  for (std::size_t c = 0; c < lanes; ++c) {
     if (!lanes_[c].wants(frame)) continue;
     wanted = true;
     ChannelLane& lane = lanes_[c];
@@ -56,21 +99,23 @@ void SampleAssembler::push(const CanFrame& frame) noexcept {
   }
   // Nearly always nothing, or one instant that is whole. A channel that did not advance is not far
   // ahead: the last frame left nothing to settle.
-  for (Readings readings; far || !waits(); ++next_tick_) {
-    if (far || find_all(next_tick_, readings) < count_) return settle(kWaitTicks);
-    emit(readings);
+  for (Readings readings; far || !waits(lanes); ++next_tick_) {
+    if (far || find_all(lanes, next_tick_, readings) < lanes) return settle(kWaitTicks);
+    emit(lanes, readings);
+  }
+}
+
+void SampleAssembler::push(const CanFrame& frame) noexcept {
+  if (count_ == kChannels) {
+    push_among(std::integral_constant<std::size_t, kChannels>{}, frame);
+  } else {
+    push_among(count_, frame);
   }
 }
 
 void SampleAssembler::push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept {
   if (paused(lane, frame.time_ns)) restart(frame.time_ns);
   lane.push(frame);
-}
-
-bool SampleAssembler::waits() const noexcept {
-  for (std::size_t c = count_; c-- > 0;)
-    if (lanes_[c].newest() - lane_offset_[c] < next_tick_) return true;
-  return false;
 }
 
 void SampleAssembler::flush() noexcept {
@@ -127,15 +172,6 @@ const Reading* SampleAssembler::find(std::size_t channel, std::int64_t tick) con
   return lanes_[channel].find(tick + lane_offset_[channel]);
 }
 
-std::size_t SampleAssembler::find_all(std::int64_t tick, Readings& readings) const noexcept {
-  std::size_t channels = 0;
-  for (std::size_t c = 0; c < count_; ++c) {
-    readings[c] = find(c, tick);
-    channels += readings[c] != nullptr ? 1U : 0U;
-  }
-  return channels;
-}
-
 std::int64_t SampleAssembler::newest() const noexcept {
   std::int64_t tick = lanes_[0].newest() - lane_offset_[0];
   for (std::size_t c = 1; c < count_; ++c)
@@ -150,10 +186,10 @@ void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
     const std::int64_t end = std::min(last, next_tick_ + kLaneSpan);
     while (next_tick_ <= end) {
       Readings readings;
-      const std::size_t channels = find_all(next_tick_, readings);
+      const std::size_t channels = find_all(count_, next_tick_, readings);
       if (channels < count_ && last - next_tick_ < wait_ticks) return;
       if (channels == count_) {
-        emit(readings);
+        emit(count_, readings);
       } else if (channels > 0) {
         ++counts_.incomplete;
       }
@@ -162,28 +198,6 @@ void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
     if (next_tick_ > last) return;
     next_tick_ = std::max(next_tick_, last - kLaneSpan);
   }
-}
-
-void SampleAssembler::emit(const Readings& readings) noexcept {
-  if (ready_count_ == kReady) {
-    ++counts_.overflow;
-    return;
-  }
-  Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
-  sample.tick = next_tick_;
-  sample.time_ns = readings[0]->time_ns;
-  unsigned saturated = 0;
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    sample.accel_mps2[c] = readings[c]->accel_mps2;
-    saturated |= unsigned{readings[c]->saturated} << c;
-  }
-  for (std::size_t c = kChannels; c < count_; ++c) {
-    sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(readings[c]->accel_mps2);
-    saturated |= unsigned{readings[c]->saturated} << c;
-  }
-  sample.saturated = static_cast<std::uint8_t>(saturated);
-  ++counts_.samples;
-  meter_.update(sample.tick, sample.time_ns);
 }
 
 bool SampleAssembler::pop(Sample& sample) noexcept {

@@ -69,17 +69,23 @@ class SampleAssembler {
   static constexpr std::size_t kMostLanes = kChannels + kExtras;
 
   using Readings = std::array<const Reading*, kMostLanes>;
+  // Count: of lanes, a constant where they are three, for which the loops unroll.
+  template <class Count>
+  void push_among(Count lanes, const CanFrame& frame) noexcept;
   void push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept;
   void align() noexcept;
   void settle(std::int64_t wait_ticks) noexcept;
-  void emit(const Readings& readings) noexcept;
+  template <class Count>
+  void emit(Count lanes, const Readings& readings) noexcept;
   void restart(std::int64_t time_ns) noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
   /// How many channels have the tick; null for the others.
-  std::size_t find_all(std::int64_t tick, Readings& readings) const noexcept;
+  template <class Count>
+  std::size_t find_all(Count lanes, std::int64_t tick, Readings& readings) const noexcept;
   [[nodiscard]] std::int64_t newest() const noexcept;
   /// A channel has nothing yet of the next instant, nor of a later one.
-  [[nodiscard]] bool waits() const noexcept;
+  template <class Count>
+  [[nodiscard]] bool waits(Count lanes) const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 
