@@ -73,13 +73,10 @@ class CsvFeed final : public SampleFeed {
   }
 
  private:
-  static constexpr double kScreened = 200.0;  // samples that the raw screen holds
-
   /// Flat tops are seen before the low pass rounds them.
   [[nodiscard]] ScreenConfig raw_screen() const {
     ScreenConfig raw = signals().screen;
     raw.sample_rate_hz = input_.sample_rate_hz;
-    raw.stuck_s = kScreened / raw.sample_rate_hz;
     return raw;
   }
   void hand_on(const Sample& sample) {

@@ -194,8 +194,7 @@ TEST(Estimator, RefusesEachSettingThatIsOutOfRange) {
   EXPECT_TRUE(refused([](C& c) { c.curve_nodes_mps[4] = c.curve_nodes_mps[3]; }));
   EXPECT_TRUE(refused([&](C& c) { c.curve_nodes_mps[2] = nan; }));
   EXPECT_TRUE(refused([](C& c) { c.curve_nodes_mps[7] = 11.0; }));
-  EXPECT_TRUE(refused([](C& c) { c.screen.stuck_s = 0.0; }));
-  EXPECT_TRUE(refused([](C& c) { c.screen.stuck_s = 10.0; }));
+  EXPECT_TRUE(refused([](C& c) { c.screen.moved_mps2 = 0.0; }));
   EXPECT_TRUE(refused([](C& c) { c.anti_alias.corner_hz = -1.0; }));
   EXPECT_TRUE(refused([&](C& c) { c.anti_alias.corner_hz = nan; }));
   EXPECT_TRUE(refused([](C& c) { c.anti_alias.order = 0; }));

@@ -78,7 +78,6 @@ TEST(SmallParts, RefuseWhatTheyHaveNoRoomFor) {
   EXPECT_TRUE(SmallEstimator::check({}).ok());
   EXPECT_FALSE(SmallEstimator::check({.sample_rate_hz = 301.0}).ok());
   EXPECT_FALSE(SmallEstimator::check({.memory = Memory::kWindow, .memory_s = 60.0}).ok());
-  EXPECT_FALSE(SmallEstimator::check({.screen = {.stuck_s = 0.6}}).ok());
 }
 
 }  // namespace

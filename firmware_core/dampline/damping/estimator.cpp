@@ -62,8 +62,7 @@ Result<EstimatorConfig> BasicEstimator<Kind>::check(const EstimatorConfig& confi
     if (!(node > left && node < 10.0)) return Errc::kInvalidConfig;
     left = node;
   }
-  if (!BasicSampleScreen<Kind::kScreened>::check(screen_config(config)).ok())
-    return Errc::kInvalidConfig;
+  if (!decltype(screen_)::check(screen_config(config)).ok()) return Errc::kInvalidConfig;
   if (!(config.anti_alias.corner_hz >= 0.0) || config.anti_alias.order < 1 ||
       config.anti_alias.order > 8) {
     return Errc::kInvalidConfig;

@@ -34,8 +34,7 @@ struct UpdateResult {
 struct FullEstimate {
   using Rows = FullRows;
   using Store = BlockStore;
-  static constexpr std::size_t kScreened = 256;  ///< samples that the screen holds
-  static constexpr bool kHasMotion = true;       ///< UpdateResult::motion
+  static constexpr bool kHasMotion = true;  ///< UpdateResult::motion
 };
 /// For controllers of 128 KiB: at most 300 Hz, no sliding window, no motion and no statistics to
 /// merge; rows in single precision, deviations from 16 entries of grouped scales
@@ -43,7 +42,6 @@ struct FullEstimate {
 struct SmallEstimate {
   using Rows = SmallRows;
   using Store = GroupedStore;
-  static constexpr std::size_t kScreened = 150;
   static constexpr bool kHasMotion = false;
 };
 
@@ -160,7 +158,8 @@ class BasicEstimator {
   double pitch_share_{0.0};
   bool turn_known_{false};
 
-  BasicSampleScreen<Kind::kScreened> screen_;
+  static_assert(stuck_samples(kMaxRateHz) <= 80.0);
+  BasicSampleScreen<80> screen_;
   Fir<VelocityLift::kHalf> lift_;
   DriftFreeIntegral velocity_;
   OfMotion<DriftFreeIntegral> deflection_;

@@ -6,14 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "dampline/sample/screen.hpp"
+
 namespace dampline {
 namespace {
 
 constexpr double kNoNumberMps2 = 1e6;
-constexpr double kStuckS = 0.2;
-// Clean records of 12 bits hold a code for 10 samples at most, a car's own of 8 bits for 53.
-constexpr std::int64_t kStuckSamples = 80;
-constexpr std::int64_t kOthersMove = 8;  // codes that another channel spans meanwhile
 constexpr std::uint64_t kFewSaturated = 3;
 // A channel that is stuck or clips has no level of its own.
 constexpr std::uint32_t kNoLevel = 1U << static_cast<unsigned>(FaultKind::kStuckChannel) |
@@ -49,7 +47,7 @@ Result<GuardConfig> Guard::check(const GuardConfig& config) noexcept {
 Guard::Guard(const GuardConfig& config) noexcept
     : config_{config},
       block_ticks_{ticks_of(kBlockS)},
-      stuck_ticks_{std::max(ticks_of(kStuckS), kStuckSamples)},
+      stuck_ticks_{std::llround(stuck_samples(config.sample_rate_hz))},
       log_{config.sample_rate_hz},
       spikes_{SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}},
       levels_{LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}},
@@ -194,7 +192,7 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     run.lowest = std::min(run.lowest, sum);
     run.highest = std::max(run.highest, sum);
     const bool stuck =
-        sample.tick - run.first_tick + 1 >= stuck_ticks_ && run.highest - run.lowest > kOthersMove;
+        sample.tick - run.first_tick + 1 >= stuck_ticks_ && run.highest - run.lowest > kStepsMoved;
     if (!stuck) continue;
     log_.spoil(FaultKind::kStuckChannel, channel_of(c), run.reported ? sample.tick : run.first_tick,
                sample.tick);

@@ -9,7 +9,6 @@
 
 namespace dampline {
 namespace {
-constexpr double kStepsMoved = 8.0;
 constexpr double kFlatTopRms = 4.0;  // smaller extremes repeat by chance
 constexpr double kSteepSteps = 6.0;
 constexpr double kSameValue = 1e-9;  // rounding of a value that was printed
@@ -20,8 +19,8 @@ bool is_number(double accel_mps2) noexcept { return std::abs(accel_mps2) < kNoNu
 
 template <std::size_t kMost>
 Result<ScreenConfig> BasicSampleScreen<kMost>::check(const ScreenConfig& config) noexcept {
-  const double window = config.sample_rate_hz * config.stuck_s;
-  if (!(window >= 2.0 && window <= static_cast<double>(kCapacity))) return Errc::kInvalidConfig;
+  if (!(config.sample_rate_hz > 0.0 && std::isfinite(config.sample_rate_hz)))
+    return Errc::kInvalidConfig;
   if (!(config.moved_mps2 > 0.0)) return Errc::kInvalidConfig;
   for (const double step_mps2 : config.step_mps2) {
     if (!(step_mps2 >= 0.0)) return Errc::kInvalidConfig;
@@ -31,7 +30,8 @@ Result<ScreenConfig> BasicSampleScreen<kMost>::check(const ScreenConfig& config)
 
 template <std::size_t kMost>
 BasicSampleScreen<kMost>::BasicSampleScreen(const ScreenConfig& config) noexcept
-    : window_{static_cast<std::size_t>(std::llround(config.sample_rate_hz * config.stuck_s))},
+    : window_{static_cast<std::size_t>(
+          std::min(std::round(stuck_samples(config.sample_rate_hz)), double{kCapacity}))},
       config_{config} {}
 
 template <std::size_t kMost>
@@ -167,7 +167,7 @@ bool BasicSampleScreen<kMost>::moved(std::size_t channel) const noexcept {
     highest = std::max(highest, value);
   }
   const double step = config_.step_mps2[channel];
-  return highest - lowest > (step > 0.0 ? kStepsMoved * step : config_.moved_mps2);
+  return highest - lowest > (step > 0.0 ? double{kStepsMoved} * step : config_.moved_mps2);
 }
 
 /// The top of a parabola that a coarse step makes equal for n samples is three steps lower n / 2
@@ -203,6 +203,6 @@ void BasicSampleScreen<kMost>::judge_flat_top(std::size_t channel) noexcept {
 }
 
 template class BasicSampleScreen<256>;
-template class BasicSampleScreen<150>;
+template class BasicSampleScreen<80>;
 
 }  // namespace dampline

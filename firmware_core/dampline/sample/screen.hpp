@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,26 +20,35 @@ struct Screened {
   std::uint8_t channels{0};  ///< bit c set: channel c is the reason
 };
 
+/// A channel is stuck when it holds one value for 0.2 s and at least 80 samples, while others span
+/// more than eight of their steps: the screen leaves it out, the guard names it. Clean records of
+/// 12 bits hold a code for 10 samples at most, a car's own of 8 bits for 53.
+inline constexpr double kStuckS = 0.2;
+inline constexpr double kStuckSamples = 80.0;
+inline constexpr int kStepsMoved = 8;
+[[nodiscard]] constexpr double stuck_samples(double sample_rate_hz) noexcept {
+  return std::max(kStuckS * sample_rate_hz, kStuckSamples);
+}
+
 struct ScreenConfig {
   double sample_rate_hz{300.0};
-  double stuck_s{0.5};  ///< as long as this on one value, while another channel moves: stuck
-  /// Resolution of each channel; a channel moves when it spans more than eight steps. 0: unknown.
+  /// Resolution of each channel; it moves when it spans kStepsMoved of them. 0: unknown.
   std::array<double, kChannels> step_mps2{};
   double moved_mps2{0.5};  ///< moves when it spans more than this, where the step is unknown
   /// For inputs without a known full scale: flat tops at the extreme of the record are saturation.
   bool find_flat_tops{false};
 };
 
-/// Screens samples before anything uses them. They come out stuck_s later, because it takes that
-/// long to know that a channel is stuck, and the verdict must reach back to the first stuck sample.
-/// A sensor that is quiet because the car stands is not stuck: then no other channel moves.
+/// Screens samples before anything uses them. They come out stuck_samples() later, because it takes
+/// that long to know that a channel is stuck, and the verdict must reach back to the first stuck
+/// sample. A sensor that is quiet because the car stands is not stuck: then no other channel moves.
 template <std::size_t kMost>
 class BasicSampleScreen {
  public:
-  static constexpr std::size_t kCapacity = kMost;  ///< samples that may be held
+  static constexpr std::size_t kCapacity = kMost;  ///< samples; the most that it waits for
   static constexpr std::int64_t kFlatTop = 4;      ///< equal values in a row at the extreme
 
-  /// kInvalidConfig unless 2 <= sample_rate_hz * stuck_s <= kCapacity and moved_mps2 > 0.
+  /// kInvalidConfig unless the rate and moved_mps2 are positive, the steps not negative.
   [[nodiscard]] static Result<ScreenConfig> check(const ScreenConfig& config) noexcept;
   /// Precondition: check(config).ok().
   explicit BasicSampleScreen(const ScreenConfig& config) noexcept;
