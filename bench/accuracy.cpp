@@ -23,21 +23,10 @@ struct Seeds {
   int count{12};
 };
 
-/// Mean and largest magnitude.
-struct Spread {
-  double sum{0.0};
-  double largest{0.0};
-  int count{0};
-  void add(double x) {
-    sum += std::abs(x);
-    largest = std::max(largest, std::abs(x));
-    ++count;
-  }
-  [[nodiscard]] std::string text(double bound) const {
-    const char* mark = bound > 0.0 && largest > bound ? " (!)" : "";
-    return fmt::format("{:.2f} / {:.2f}{}", 100.0 * sum / count, 100.0 * largest, mark);
-  }
-};
+/// A largest value beyond its bound (0: none) is marked.
+std::string text(const Spread& spread, double bound) {
+  return spread.percent(2) + (bound > 0.0 && spread.largest > bound ? " (!)" : "");
+}
 
 struct Cell {
   Spread coulomb, stiffness, false_viscous, curve;
@@ -93,9 +82,9 @@ void standard_table(const Seeds& seeds, std::vector<int>& inside) {
       const Cell& cell = row.at[l];
       const bool last = l + 1 == kLengthsS.size();
       fmt::print("| {} | {:.0f} s | {} | {} | {} | {} | {} | {} |\n", c.name, kLengthsS[l],
-                 cell.coulomb.text(b.coulomb), cell.stiffness.text(b.stiffness),
-                 cell.false_viscous.text(b.false_viscous), cell.curve.text(b.curve),
-                 last ? row.velocity.text(0.09) : "", last ? row.deflection.text(0.0) : "");
+                 text(cell.coulomb, b.coulomb), text(cell.stiffness, b.stiffness),
+                 text(cell.false_viscous, b.false_viscous), text(cell.curve, b.curve),
+                 last ? text(row.velocity, 0.09) : "", last ? text(row.deflection, 0.0) : "");
       inside[l] += cell.inside;
     }
   }
@@ -126,8 +115,8 @@ void changed_table(const std::string& title, double coulomb_bound, const Seeds& 
     change(c, config);
     const Row row = run(c, seeds, config);
     const Cell& cell = row.at.back();
-    fmt::print("| {} | {} | {} | {} | {} | {} of {} |\n", c.name, cell.coulomb.text(coulomb_bound),
-               cell.stiffness.text(0.0), cell.false_viscous.text(0.0), cell.curve.text(0.0),
+    fmt::print("| {} | {} | {} | {} | {} | {} of {} |\n", c.name, text(cell.coulomb, coulomb_bound),
+               text(cell.stiffness, 0.0), text(cell.false_viscous, 0.0), text(cell.curve, 0.0),
                cell.lower_bound, seeds.count);
   }
 }
@@ -149,7 +138,7 @@ void asymmetry_table(const Seeds& seeds) {
     stiffness.add(a.stiffness - b.stiffness);
   }
   fmt::print("| difference in % | Fc | stiffness |\n|--|--|--|\n| mean / largest | {} | {} |\n",
-             coulomb.text(0.005), stiffness.text(0.005));
+             text(coulomb, 0.005), text(stiffness, 0.005));
 }
 
 void harder_tables(const Seeds& seeds) {

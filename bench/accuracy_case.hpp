@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -32,6 +35,22 @@ inline std::vector<AccuracyCase> standard_cases() {
   return {make("laden 80", true, 80), make("laden 60", true, 60), make("empty 80", false, 80),
           make("empty 60", false, 60)};
 }
+
+/// Mean and largest magnitude.
+struct Spread {
+  double sum{0.0};
+  double largest{0.0};
+  int count{0};
+  void add(double x) {
+    sum += std::abs(x);
+    largest = std::max(largest, std::abs(x));
+    ++count;
+  }
+  [[nodiscard]] std::string percent(int decimals) const {
+    return fmt::format("{:.{}f} / {:.{}f}", 100.0 * sum / count, decimals, 100.0 * largest,
+                       decimals);
+  }
+};
 
 /// Relative errors of one estimate, as fractions of the truth.
 struct Errors {

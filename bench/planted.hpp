@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "dampline/explanation.hpp"
 #include "drivers/candump/line.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/faults.hpp"
@@ -38,24 +40,19 @@ struct Planted {
   double truth{0.0};
 };
 
-/// The kinds that are planted; "mode" and "pitch" are both an unmodelled mode.
-inline const std::vector<std::string>& planted_kinds() {
-  static const std::vector<std::string> kinds{"viscous",
-                                              "asymmetric_viscous",
-                                              "quadratic_damping",
-                                              "progressive_friction",
-                                              "stribeck",
-                                              "presliding_hysteresis",
-                                              "backlash",
-                                              "bump_stop",
-                                              "cubic_stiffness",
-                                              "quadratic_stiffness",
-                                              "asymmetric_stiffness",
-                                              "pitch",
-                                              "mode",
-                                              "time_skew",
-                                              "gain_error",
-                                              "impulsive_input"};
+/// The kinds that are planted: every effect with a name; "mode" and "pitch" are both an unmodelled
+/// mode.
+inline std::vector<std::string> planted_kinds() {
+  std::vector<std::string> kinds;
+  for (std::size_t e = 0; e < effect::kEffects; ++e) {
+    const auto each = static_cast<effect::Effect>(e);
+    if (each == effect::Effect::kUnknown) continue;
+    if (each == effect::Effect::kUnmodelledMode) {
+      kinds.insert(kinds.end(), {"pitch", "mode"});
+    } else {
+      kinds.emplace_back(effect::name_of(each));
+    }
+  }
   return kinds;
 }
 

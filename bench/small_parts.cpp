@@ -21,21 +21,6 @@ using namespace dampline::bench;
 
 constexpr std::array<double, 3> kLengthsS{20.0, 60.0, 300.0};
 
-/// Mean and largest magnitude.
-struct Spread {
-  double sum{0.0};
-  double largest{0.0};
-  int count{0};
-  void add(double x) {
-    sum += std::abs(x);
-    largest = std::max(largest, std::abs(x));
-    ++count;
-  }
-  [[nodiscard]] std::string percent() const {
-    return fmt::format("{:.3f} / {:.3f}", 100.0 * sum / count, 100.0 * largest);
-  }
-};
-
 /// One estimator's errors over all records at one length.
 struct Errors48 {
   Spread coulomb, stiffness, false_viscous, curve, coulomb_std, stiffness_std;
@@ -53,7 +38,7 @@ struct Errors48 {
   [[nodiscard]] std::string row(double length_s, const char* name) const {
     return fmt::format(
         "| {:.0f} s | {} | {} | {} | {} | {} | {:.3f} | {:.3f} | {:.1f} % |\n", length_s, name,
-        coulomb.percent(), stiffness.percent(), false_viscous.percent(), curve.percent(),
+        coulomb.percent(3), stiffness.percent(3), false_viscous.percent(3), curve.percent(3),
         100.0 * coulomb_std.sum / coulomb_std.count,
         100.0 * stiffness_std.sum / stiffness_std.count, 50.0 * within / coulomb.count);
   }
@@ -119,7 +104,7 @@ int main(int argc, char** argv) {
       "\nThe small one's difference from the full one in %, mean / largest:\n\n"
       "| after | Fc | stiffness | nodes of the curve |\n|--|--|--|--|\n");
   for (std::size_t l = 0; l < kLengthsS.size(); ++l)
-    fmt::print("| {:.0f} s | {} | {} | {} |\n", kLengthsS[l], table[l].coulomb_apart.percent(),
-               table[l].stiffness_apart.percent(), table[l].curve_apart.percent());
+    fmt::print("| {:.0f} s | {} | {} | {} |\n", kLengthsS[l], table[l].coulomb_apart.percent(3),
+               table[l].stiffness_apart.percent(3), table[l].curve_apart.percent(3));
   return EXIT_SUCCESS;
 }
