@@ -104,9 +104,8 @@ std::string evidence_sections(const Evidence& evidence) {
 /// What stands above everything else: the result, whether it is to be trusted, and what the model
 /// lacked.
 std::string opening(const RunResult& result) {
-  const std::string own =
-      fmt::format("<p class=\"lead\">{}</p>\n{}{}", escape_html(result.headline),
-                  trust_section(result), warning_section(result));
+  std::string own = fmt::format("<p class=\"lead\">{}</p>\n{}{}", escape_html(result.headline),
+                                trust_section(result), warning_section(result));
   if (result.evidence.explanation.empty()) return own;
   return fmt::format("{}<p>{}</p>\n{}", own, escape_html(explanation_headline(result.evidence)),
                      evidence_sections(result.evidence));

@@ -137,6 +137,7 @@ void add_mean_forces(const LoadRuns& runs, const char* load, Figures& figures) {
   const auto add = [&](const char* column, double sign, const auto& data, const char* with,
                        const std::string& remark, const Form& form) {
     std::vector<double> forces;
+    forces.reserve(data.size());
     for (const auto& one : data)
       forces.push_back(branch_force(
           one->estimates(runs.config.moving_mass_kg, runs.config.stiffness_npm).*form.method,

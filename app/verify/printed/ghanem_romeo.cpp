@@ -4,6 +4,7 @@
 // clang-format off
 namespace dampline::app {
 
+// NOLINTNEXTLINE(readability-function-size): tables
 const std::vector<PrintedTable>& ghanem_romeo() {
   static const std::vector<PrintedTable> all{
       {"1", 840, "Estimated parameters of a non-linear oscillator based on Eqs. (11) and (13)",

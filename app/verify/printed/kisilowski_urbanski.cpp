@@ -7,6 +7,7 @@ namespace dampline::app {
 // Row n is the n-th line of the table: from XP(I) to XK(I) in m/s, the slope of the broken line, the
 // force in 10^3 N. Line 11 is the jump at v = 0. Printed "-0.20864", "-0.0277818", "-0.029" and
 // "-1.98199" stand as they are; their neighbours say -0.020864, -0.027818, -0.0029 and -1.87199.
+// NOLINTNEXTLINE(readability-function-size): tables
 const std::vector<PrintedTable>& kisilowski_urbanski() {
   static const std::vector<std::string> columns{"XP", "XK", "slope", "force"};
   static const std::vector<PrintedTable> all{

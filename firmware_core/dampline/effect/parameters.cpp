@@ -80,8 +80,8 @@ struct Part {
   const ModelFit& fit;
   const Candidate& candidate;
   const Grids& grids;
-  int term;
-  Uncertain own;  // what multiplies every coefficient
+  int term{0};
+  Uncertain own{};  // what multiplies every coefficient
 
   [[nodiscard]] LawErrors errors() const noexcept { return errors_of(candidate); }
   [[nodiscard]] Uncertain coefficient(int i = 0) const noexcept {

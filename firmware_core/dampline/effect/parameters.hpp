@@ -48,9 +48,9 @@ struct Uncertain {
 struct Detail {
   Model model;
   ModelFit fit;
-  ModelFit slow;  ///< without the shortest scale, which knows nothing of stiffness
-  double factor;  ///< on deviations, for few entries
-  double mass_kg;
+  ModelFit slow;       ///< without the shortest scale, which knows nothing of stiffness
+  double factor{1.0};  ///< on deviations, for few entries
+  double mass_kg{0.0};
 };
 
 /// Friction and spring of a model.
