@@ -252,8 +252,9 @@ std::string fault_size(const FaultFinding& fault) {
 }
 
 std::string fault_section(const RunResult& result) {
-  if (result.kind != "truck") return "";
   const DataFaults& faults = result.faults;
+  const bool truck = result.kind == "truck";
+  if (!truck && faults.list.empty()) return "";
   std::string out;
   if (faults.list.empty()) {
     out = "<p>No fault of a sensor or of the transport was found.</p>\n";
@@ -279,6 +280,7 @@ std::string fault_section(const RunResult& result) {
         "<p class=\"note\">Because of these, {} single values were replaced by what their "
         "neighbours say and {} samples left out.</p>\n",
         format_count(faults.values_replaced), format_count(faults.samples_spoilt));
+  if (!truck) return out;
   return out + fmt::format(
                    "<p class=\"note\">Input, no faults: {} impacts (rail joints, wheel flats), {} "
                    "changes of speed.</p>\n",

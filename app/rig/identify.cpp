@@ -161,6 +161,7 @@ RunResult Job::replay() {
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
   source_->report(result);
+  result.faults = record_.faults;
   return result;
 }
 

@@ -12,6 +12,7 @@
 
 #include "app/error.hpp"
 #include "app/rig/consistent.hpp"
+#include "app/rig/wrong.hpp"
 #include "drivers/csv/reader.hpp"
 
 namespace dampline::app::rig {
@@ -325,12 +326,12 @@ Record csv_record(const std::string& path, const InputConfig& input, bool skip_b
     throw RunError{
         "-: a rig's record is read several times and cannot come from standard input; expected a "
         "file"};
-  return consistent_record(uniform_record({path, [config, input]() -> std::unique_ptr<Source> {
-                                             auto reader = CsvReader::open(config);
-                                             if (!reader) throw RunError{reader.error_text()};
-                                             return std::make_unique<CsvSource>(
-                                                 std::move(reader.value()), input);
-                                           }}));
+  const auto open = [config, input]() -> std::unique_ptr<Source> {
+    auto reader = CsvReader::open(config);
+    if (!reader) throw RunError{reader.error_text()};
+    return std::make_unique<CsvSource>(std::move(reader.value()), input);
+  };
+  return consistent_record(uniform_record(screened_record({path, open}, skip_bad_lines)));
 }
 
 }  // namespace dampline::app::rig

@@ -48,6 +48,7 @@ struct Record {
   std::function<std::unique_ptr<Source>()> open;
   std::vector<std::string> notes{};  ///< what was done to the rows, a sentence each
   double force_sign{1.0};            ///< -1: the force was turned
+  DataFaults faults{};               ///< wrong values and times that were taken out of the rows
 };
 
 /// A rig's record in a CSV file, its columns and scales as [input.columns] and [input.scale] say.

@@ -267,7 +267,7 @@ void list_members(Archive&& a, Of<RunResult> auto& r) {
   a("warnings", r.warnings);
   a("notes", r.notes);
   if (a.has("events_more", r.events_more > 0)) a("events_more", r.events_more);
-  if (a.has("faults", r.kind == "truck")) list_members(a, r.faults);
+  if (a.has("faults", r.kind == "truck" || !r.faults.list.empty())) list_members(a, r.faults);
   if (a.has("methods", !r.methods.empty())) a("methods", r.methods);
   if (a.has("live", r.live.has_value())) a("live", r.live);
 }

@@ -305,13 +305,13 @@ struct RunResult {
   std::vector<DensityTable> densities;
   std::shared_ptr<const PhaseSnapshot> phase;  ///< of a truck; large, hence shared
   Convergence convergence;
-  std::vector<MotionRow> motion;         ///< an excerpt of at most 20 s
-  std::vector<ForceRow> force;           ///< an excerpt; empty for a truck
-  std::vector<Excluded> excluded;        ///< capped
-  std::uint64_t excluded_more{0};        ///< stretches beyond the cap
-  std::vector<RunEvent> events;          ///< capped
-  std::uint64_t events_more{0};          ///< events beyond the cap
-  DataFaults faults;                     ///< of a truck record
+  std::vector<MotionRow> motion;   ///< an excerpt of at most 20 s
+  std::vector<ForceRow> force;     ///< an excerpt; empty for a truck
+  std::vector<Excluded> excluded;  ///< capped
+  std::uint64_t excluded_more{0};  ///< stretches beyond the cap
+  std::vector<RunEvent> events;    ///< capped
+  std::uint64_t events_more{0};    ///< events beyond the cap
+  DataFaults faults;
   std::optional<Magnitudes> magnitudes;  ///< of a truck record; in no file
   std::optional<LiveFigures> live;
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out

@@ -102,14 +102,23 @@ Validated validate(const Explanation& explanation, Series series) {
   return out;
 }
 
+/// Wrong values that left gaps, named.
+std::string gaps_of(const Series& series) {
+  std::string out;
+  for (const FaultFinding& f : series.faults)
+    out +=
+        fmt::format("; found {} wrong values in {} from {:.3f} s on", f.count, f.channel, f.time_s);
+  return out;
+}
+
 std::vector<Series> read_records(const Config& config, const ExplainOptions& options) {
   std::vector<Series> out;
   for (const std::string& path : options.records) {
     out.push_back(read_series(path, config, options.skip_bad_lines));
     if (out.back().has_gap && config.model.inertia == "identify")
       throw RunError{fmt::format(
-          "{}: has gaps or values that are no number; expected none where the mass is identified",
-          path)};
+          "{}: has gaps or values that are no number; expected none where the mass is identified{}",
+          path, gaps_of(out.back()))};
     if (out.back().size() < 500)
       throw RunError{fmt::format("{}: found {} usable samples, expected at least 500", path,
                                  out.back().size())};
@@ -235,6 +244,8 @@ Explanation explain(const Config& given, const ExplainOptions& options) {
   try_driven_mass(found, options);
   const std::vector<Series>& records = found.records;
   Explanation& out = found.explanation;
+  for (const Series& record : records)
+    out.faults.insert(out.faults.end(), record.faults.begin(), record.faults.end());
   for (const Series& record : records)
     for (const std::string& note : record.notes)
       out.notes.push_back(records.size() > 1 ? fmt::format("{}: {}", record.record, note) : note);

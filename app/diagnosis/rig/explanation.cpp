@@ -206,6 +206,7 @@ app::Explanation found_in(const Explanation& e) {
   out.force = e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured";
   out.validation.assign(e.validation.begin(), e.validation.end());
   out.notes = e.notes;
+  out.faults = e.faults;
   out.signature = e.signature;
   out.channels = {"deflection", "velocity", "speed"};
   return out;

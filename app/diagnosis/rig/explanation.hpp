@@ -52,12 +52,13 @@ struct Explanation {
   std::vector<Validated> validation;
   double filter_hz{0.0};  ///< corner of the test function; 0: none
   bool whole_records{false};
-  Evidence evidence;               ///< but for its JSON
-  Signature signature;             ///< of what the final model leaves
-  Convergence convergence;         ///< of the final model's coefficients, over all records
-  std::vector<std::string> notes;  ///< how the records were read, a sentence each
-  std::string alike;               ///< effects that explain alike, so that none is named; empty
-  std::string impossible;          ///< figures below zero that cannot be; empty
+  Evidence evidence;                 ///< but for its JSON
+  Signature signature;               ///< of what the final model leaves
+  Convergence convergence;           ///< of the final model's coefficients, over all records
+  std::vector<std::string> notes;    ///< how the records were read, a sentence each
+  std::vector<FaultFinding> faults;  ///< of all records
+  std::string alike;                 ///< effects that explain alike, so that none is named; empty
+  std::string impossible;            ///< figures below zero that cannot be; empty
   [[nodiscard]] const char* verdict() const;
   /// No more is left than noise and resolution make.
   [[nodiscard]] bool is_complete() const noexcept;

@@ -220,6 +220,7 @@ Series read_series(const std::string& path, const Config& config, bool skip_bad_
   Series out;
   out.record = path;
   out.notes = record.notes;
+  out.faults = record.faults.list;
   Clock clock{record.name, measure_interval_s(record)};
   const bool measured = record.open()->has_velocity();
   core::Survey survey{1.0 / clock.interval_s(), measured};

@@ -32,6 +32,7 @@ using Mode = core::Mode;
 struct Series {
   std::string record;
   std::vector<std::string> notes;  ///< what was done to the record, a sentence each
+  std::vector<FaultFinding> faults{};
   double interval_s{0.0};
   bool has_gap{false};
   core::Config config;  ///< test function and derivative, as the record's noise permits

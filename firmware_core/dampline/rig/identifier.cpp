@@ -81,6 +81,7 @@ Status Identifier::classify(const Sample& sample) noexcept {
   if (step > 1) {
     ++counts_.gaps;
     counts_.lost += static_cast<std::uint64_t>(step - 1);
+    first_tick_ += step - 1;  // blocks count samples: a pause of hours must not fill them
   }
   if (!finite) return Status::kNotFinite;
   return step > 1 ? Status::kGap : Status::kUsed;

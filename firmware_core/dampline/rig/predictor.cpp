@@ -71,6 +71,7 @@ bool Predictor::update(const Sample& sample, Prediction& out) noexcept {
   const std::int64_t step = sample.tick - last_tick_;
   if (step <= 0) return false;
   last_tick_ = sample.tick;
+  if (step > 1) first_tick_ += step - 1;  // as the Identifier counts
   const bool finite = is_finite(sample, config_.velocity_measured);
   if (step > 1 || !finite) {
     motion_.reset();
