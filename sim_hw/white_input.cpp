@@ -32,6 +32,13 @@ double WhiteInput::rubbed(double velocity_mps) const noexcept {
   return velocity_mps < -down ? velocity_mps + down : 0.0;
 }
 
+/// In continuous time v = 0 has no probability; here half a step of friction ends there from
+/// -dt alpha_- / 2 to dt alpha_+ / 2, half a percent of the samples. Given as 0 they would all
+/// count as v >= 0 and shift the force of both directions by 3 % of the level.
+double WhiteInput::unresolved() const noexcept {
+  return unresolved_mps_ - 0.25 * kNoiseStepS * (alpha_positive_mps2_ - alpha_negative_mps2_);
+}
+
 void WhiteInput::step() {
   deflection_m_ += 0.5 * kNoiseStepS * velocity_mps_;
   const double input_mps2 = noise_mps2_ * random_.normal();
@@ -40,6 +47,7 @@ void WhiteInput::step() {
       before_mps + kNoiseStepS * (input_mps2 - beta_ * deflection_m_ - viscous_ps_ * before_mps);
   const double end_mps = rubbed(after_mps);
   alpha_mps2_ = 2.0 * (after_mps - end_mps) / kNoiseStepS + viscous_ps_ * end_mps;
+  unresolved_mps_ = after_mps;
   velocity_mps_ = end_mps;
   deflection_m_ += 0.5 * kNoiseStepS * velocity_mps_;
   input_mps2_ = anti_alias_.update({input_mps2})[0];
@@ -50,7 +58,7 @@ Motion WhiteInput::next() {
   const double frame_mps2 = -0.5 * (beta_ * deflection_m_ + alpha_mps2_);
   return {.tick = tick_++,
           .deflection_m = deflection_m_,
-          .velocity_mps = velocity_mps_,
+          .velocity_mps = velocity_mps_ != 0.0 ? velocity_mps_ : unresolved(),
           .frame_mps2 = frame_mps2,
           .relative_mps2 = 2.0 * frame_mps2 + input_mps2_};
 }

@@ -39,6 +39,9 @@ class WhiteInput {
   void step();
   /// After half a step of friction alone.
   [[nodiscard]] double rubbed(double velocity_mps) const noexcept;
+  /// Of a sample that friction has stopped: where it was before, about the middle of where it
+  /// stops.
+  [[nodiscard]] double unresolved() const noexcept;
 
   double beta_;
   double alpha_positive_mps2_;
@@ -49,6 +52,7 @@ class WhiteInput {
   ButterworthLowPass<1> anti_alias_;
   double deflection_m_{0.0};
   double velocity_mps_{0.0};
+  double unresolved_mps_{0.0};
   double alpha_mps2_{0.0};
   double input_mps2_{0.0};  // filtered
   std::int64_t tick_{0};

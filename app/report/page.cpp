@@ -13,16 +13,6 @@
 
 namespace dampline::app {
 
-std::string figure(const Plot& plot, const std::string& name, std::string_view caption) {
-  if (plot.panels.empty()) return "";
-  std::string drawn;
-  for (std::size_t i = 0; i < plot.panels.size(); ++i)
-    drawn += plot.panels[i].draw(fmt::format("{}-{}", name, i + 1), caption) + "\n";
-  return fmt::format(
-      "<figure><div class=\"panels{}\">\n{}</div>\n<figcaption>{}</figcaption></figure>\n",
-      plot.side_by_side ? " beside" : "", drawn, escape_html(caption));
-}
-
 namespace {
 
 constexpr std::string_view kCurveText =

@@ -6,16 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "app/report/svg/panel.hpp"
+#include "app/report/svg/figure.hpp"
 #include "app/run/result.hpp"
 
 namespace dampline::app {
-
-/// Panels that belong together; none where the result has nothing to draw.
-struct Plot {
-  std::vector<svg::Panel> panels;
-  bool side_by_side{false};  ///< where the page is wide enough; else one below the other
-};
 
 /// A number's unit as a plot shows it, and the factor to it: kN and MN/m where N and N/m would need
 /// many digits.
@@ -50,10 +44,6 @@ template <class Row>
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
-
-/// The panels as a <figure>, `name` in their identifiers; "" where there is nothing to draw.
-[[nodiscard]] std::string figure(const Plot& plot, const std::string& name,
-                                 std::string_view caption);
 
 /// The damping curve with its band, and below it how many samples support each part.
 [[nodiscard]] Plot plot_curve(const RunResult& result);

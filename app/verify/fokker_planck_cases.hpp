@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "app/report/svg/figure.hpp"
 #include "app/verify/printed/printed.hpp"
 #include "dampline/density/paper_form.hpp"
 
@@ -33,11 +35,16 @@ struct PaperLine {
   const PrintedRow* published{nullptr};
 };
 
-/// A table in the form of the publication's Tables 1 and 2. `whole` and `excluded` are of one run.
+/// The publication's 18 examples are nine a load.
+inline constexpr std::uint64_t kRunsOfTable = 9;
+
+/// A table in the form of the publication's Tables 1 and 2, of nine simulated runs with the forces
+/// of its own jump at v = 0. `whole` and `excluded` are of one run.
 struct PaperTable {
   std::string name;  ///< "1" laden, "2" empty
   std::string caption;
   double half_mass_kg{0.0};                       ///< force = half_mass_kg alpha
+  std::array<double, 2> simulated_n{};            ///< magnitudes, [0]: v < 0
   PaperForm whole;                                ///< as published: v = 0 left in
   PaperForm excluded;                             ///< without the region around v = 0
   std::array<std::vector<PaperLine>, 2> lines{};  ///< [0]: v < 0
@@ -48,7 +55,11 @@ struct FokkerPlanckCases {
   std::array<PaperTable, 2> tables;
 };
 
-/// Simulates and estimates; some ten seconds.
+/// Simulates and estimates; some twenty seconds.
 [[nodiscard]] FokkerPlanckCases fokker_planck_cases();
+
+/// The publication's figures 2 and 3: damping force over velocity, what its table prints over what
+/// is found, with the band of a run.
+[[nodiscard]] Plot plot_table(const PaperTable& table);
 
 }  // namespace dampline::app

@@ -10,21 +10,6 @@
 namespace dampline::app {
 namespace {
 
-std::string safe(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 /// Cells between the bars of a row; a bar behind a backslash belongs to its cell.
 std::vector<std::string> cells_of(std::string_view row) {
   std::vector<std::string> out;
@@ -33,7 +18,7 @@ std::vector<std::string> cells_of(std::string_view row) {
     if (row[i] == '\\' && i + 1 < row.size() && row[i + 1] == '|') {
       cell += row[++i];
     } else if (row[i] == '|') {
-      out.push_back(safe(cell));
+      out.push_back(escape_html(cell));
       cell.clear();
     } else {
       cell += row[i];
@@ -51,6 +36,14 @@ std::string row_of(std::string_view row, const char* element) {
 /// What encloses the lines of one kind.
 enum class Kind { kText, kTable, kList };
 
+/// Takes what stands before `ends` off the text, and `ends` itself.
+std::string_view take_to(std::string_view& text, std::string_view ends) {
+  const std::size_t at = text.find(ends);
+  const std::string_view out = text.substr(0, at);
+  text.remove_prefix(at == std::string_view::npos ? text.size() : at + ends.size());
+  return out;
+}
+
 Kind kind_of(std::string_view line) {
   if (line.starts_with("|")) return Kind::kTable;
   return line.starts_with("- ") ? Kind::kList : Kind::kText;
@@ -67,9 +60,9 @@ std::string line_of(std::string_view line, Kind kind, bool first) {
     if (line.starts_with("|--")) return "";
     return row_of(line, first ? "th" : "td");
   }
-  if (kind == Kind::kList) return "<li>" + safe(line.substr(2)) + "</li>\n";
-  if (line.starts_with("### ")) return "<h3>" + safe(line.substr(4)) + "</h3>\n";
-  return line.empty() ? "" : "<p>" + safe(line) + "</p>\n";
+  if (kind == Kind::kList) return "<li>" + escape_html(line.substr(2)) + "</li>\n";
+  if (line.starts_with("### ")) return "<h3>" + escape_html(line.substr(4)) + "</h3>\n";
+  return line.empty() ? "" : "<p>" + escape_html(line) + "</p>\n";
 }
 
 }  // namespace
@@ -78,9 +71,13 @@ std::string html_of_markdown(std::string_view markdown) {
   std::string out;
   Kind open = Kind::kText;
   while (!markdown.empty()) {
-    const std::size_t end = markdown.find('\n');
-    const std::string_view line = markdown.substr(0, end);
-    markdown.remove_prefix(end == std::string_view::npos ? markdown.size() : end + 1);
+    if (markdown.starts_with("<figure>")) {
+      constexpr std::string_view kEnd = "</figure>\n";
+      out += std::string{ends(open, false)}.append(take_to(markdown, kEnd)).append(kEnd);
+      open = Kind::kText;
+      continue;
+    }
+    const std::string_view line = take_to(markdown, "\n");
     const Kind kind = kind_of(line);
     const bool first = kind != open;
     if (first) out += std::string{ends(open, false)} + ends(kind, true);
@@ -90,13 +87,25 @@ std::string html_of_markdown(std::string_view markdown) {
   return out + ends(open, false);
 }
 
+namespace {
+
+/// Tables of many columns, whose short words stay whole; two panels beside each other.
+constexpr std::string_view kWide = R"css(body { max-width: 76rem; }
+th, td { overflow-wrap: break-word; }
+.panels.beside { grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
+@media (max-width: 40rem) { td { min-width: 5rem; } td:first-child { min-width: 9rem; } td:last-child { min-width: 15rem; } }
+)css";
+
+}  // namespace
+
 std::string whole_page(const std::string& heading, const std::string& body) {
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n"
-      "<style>{1}body {{ max-width: 90rem; "
-      "}}\n</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n"
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>{1}{3}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n"
       "</html>\n",
-      safe(heading), kPageStyle, body);
+      escape_html(heading), kPageStyle, body, kWide);
 }
 
 }  // namespace dampline::app

@@ -6,7 +6,7 @@
 namespace dampline::app {
 
 /// HTML of what the subjects print as Markdown: headings of three signs, tables, lists of hyphens,
-/// paragraphs.
+/// paragraphs. A <figure> passes as it is.
 [[nodiscard]] std::string html_of_markdown(std::string_view markdown);
 
 /// A page that holds its style, under a heading.

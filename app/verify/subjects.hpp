@@ -6,14 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/phase/measured.hpp"
+
 namespace dampline::app {
 
 struct VerifyOptions {
-  bool json{false};                   ///< the figures as data
-  bool markdown{false};               ///< the figures as Markdown tables
-  bool quiet{false};                  ///< nothing on standard output; the exit code tells
-  std::vector<std::string> tables{};  ///< only these tables of the publication; empty: all
-  std::string* page{nullptr};         ///< takes the Markdown tables in place of standard output
+  bool json{false};                       ///< the figures as data
+  bool markdown{false};                   ///< the figures as Markdown tables
+  bool quiet{false};                      ///< nothing on standard output; the exit code tells
+  std::vector<std::string> tables{};      ///< only these tables of the publication; empty: all
+  std::vector<MeasuredRecord> records{};  ///< of rigs, for the subject phase: these alone
+  std::string* page{nullptr};  ///< takes Markdown tables and figures in place of standard output
 
   [[nodiscard]] bool wants(const std::string& table) const {
     return tables.empty() || std::find(tables.begin(), tables.end(), table) != tables.end();
@@ -29,13 +32,19 @@ inline void put(const VerifyOptions& options, const std::string& text) {
   }
 }
 
+/// Adds a <figure> to the page; standard output has none.
+inline void put_figure(const VerifyOptions& options, const std::string& html) {
+  if (options.page != nullptr) *options.page += "\n" + html;
+}
+
 // The published methods whose cases `dampline verify` recomputes and prints: 0 when every promised
 // figure is met, otherwise 1. They throw UsageError for a table that the publication does not have.
 
 /// Kisilowski and Urbanski (1987).
 int verify_fokker_planck(const VerifyOptions& options);
 /// The resonances, sections and friction of the phase-mapping literature. Tables: resonance,
-/// planarity, linearity, friction, figures.
+/// planarity, linearity, friction, figures. With records: both evidences of linearity on them, and
+/// nothing else.
 int verify_phase(const VerifyOptions& options);
 /// Ghanem and Romeo (2001).
 int verify_wavelet(const VerifyOptions& options);

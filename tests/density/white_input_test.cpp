@@ -39,6 +39,26 @@ TEST(WhiteInput, WithoutASpringGivesTheLaplaceDensity) {
   EXPECT_NEAR(m.beyond, std::exp(-1.0), 0.005);
 }
 
+// Friction of finite steps stops at v = 0, which continuous time does not: a sample there would
+// count as v >= 0. None is given so, and those that a step cannot resolve are as many on either
+// side.
+TEST(WhiteInput, DoesNotLeanAtZero) {
+  const sim::WhiteInputConfig config;
+  sim::WhiteInput source{config};
+  const double reach_mps = 0.5 * (config.friction_positive_n + config.friction_negative_n) /
+                           config.moving_mass_kg / sim::WhiteInput::kStepRateHz;
+  int near = 0;
+  int above = 0;
+  for (int i = 0; i < 900'000; ++i) {
+    const double v = source.next().velocity_mps;
+    ASSERT_NE(v, 0.0);
+    near += std::abs(v) < reach_mps ? 1 : 0;
+    above += v > 0.0 && v < reach_mps ? 1 : 0;
+  }
+  EXPECT_GT(near, 3000);
+  EXPECT_NEAR(static_cast<double>(above) / near, 0.5, 0.03);
+}
+
 // Without friction but with a viscous damper: E v^2 = D / (2 c), beta E y^2 = E v^2.
 TEST(WhiteInput, OfALinearOscillatorHasItsVariances) {
   const sim::WhiteInputConfig config{

@@ -15,11 +15,18 @@ TEST(VerifyPage, HoldsTablesListsAndHeadings) {
   EXPECT_EQ(html_of_markdown("| a |\n|--|"), "<table>\n<tr><th> a </th></tr>\n</table>\n");
 }
 
+TEST(VerifyPage, LetsFiguresPass) {
+  const std::string figure = "<figure><div>\n<svg></svg>\n\n</div></figure>\n";
+  EXPECT_EQ(html_of_markdown("| a |\n" + figure + "end\n"),
+            "<table>\n<tr><th> a </th></tr>\n</table>\n" + figure + "<p>end</p>\n");
+}
+
 TEST(VerifyPage, IsWholeByItself) {
   const std::string page = whole_page("A < B", "<p>body</p>\n");
   EXPECT_EQ(page.find("<!DOCTYPE html>"), 0U);
   EXPECT_NE(page.find("<title>A &lt; B</title>"), std::string::npos);
   EXPECT_NE(page.find("<p>body</p>"), std::string::npos);
+  EXPECT_NE(page.find("name=\"viewport\""), std::string::npos);
   EXPECT_EQ(page.find("href="), std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/phase/pictures.hpp"
 #include "app/verify/phase/rows.hpp"
 #include "app/verify/phase/studies.hpp"
 
@@ -56,6 +57,41 @@ TEST(PhaseFigures, OwnInputsAreTriedAndSticking) {
   const FrictionStudy started = study_published_inputs(inputs, 3.0, 0.0, 91);
   EXPECT_GT(started.nodes, 5);
   EXPECT_LT(started.friction_error, 0.03);
+}
+
+// Only the linear system's section is a plane; each has its three planes and the view along the
+// fourth.
+TEST(PhaseFigures, PicturesShowThePlaneOfTheLinearSystem) {
+  const std::vector<PhasePictures> all = phase_pictures();
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_LT(all[0].off_plane, 1e-9) << all[0].name;
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_GT(all[i].off_plane, 0.05) << all[i].name;
+  for (const PhasePictures& one : all) {
+    EXPECT_EQ(one.plot.panels.size(), 4U) << one.name;
+    EXPECT_GE(one.points, 10U) << one.name;
+    const std::string drawn = one.plot.panels[2].draw("plane", "plane");
+    EXPECT_NE(drawn.find("y'' (m/s²) over y' (m/s)"), std::string::npos);
+  }
+}
+
+// A curve per value of the publication's inputs, each the law away from its kink at -0.5.
+TEST(PhaseFigures, CurvesOfEveryFamilyAreTheLaw) {
+  const std::vector<FrictionFamily> families = friction_families();
+  ASSERT_EQ(families.size(), 3U);
+  EXPECT_EQ(plot_families(families).panels.size(), 6U);
+  for (const FrictionFamily& family : families) {
+    ASSERT_EQ(family.curves.size(), 3U) << family.name;
+    for (const FrictionFamily::Curve& curve : family.curves) {
+      int compared = 0;
+      for (const FrictionNode& node : curve.started.curve.nodes) {
+        if (!node.resolved || std::abs(node.deflection_m + kStudyReversalM) < 0.5) continue;
+        EXPECT_NEAR(node.friction_mps2.value, std::abs(1.0 + 2.0 * node.deflection_m), 0.02)
+            << family.name << " = " << curve.value << ", y = " << node.deflection_m;
+        ++compared;
+      }
+      EXPECT_GT(compared, 5) << family.name << " = " << curve.value;
+    }
+  }
 }
 
 TEST(PhaseFigures, SystemsAreDeclaredWhatTheyAre) {

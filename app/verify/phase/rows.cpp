@@ -18,12 +18,6 @@ double published(const char* model) {
   return printed_table(phase_mappings(), "resonance").at("omega", model).value;
 }
 
-/// A row of the publication's inputs: three values.
-std::vector<double> published_inputs(const char* row) {
-  const PrintedTable& printed = printed_table(phase_mappings(), "inputs");
-  return {printed.at(row, "1").value, printed.at(row, "2").value, printed.at(row, "3").value};
-}
-
 struct SweepCase {
   const char* what;
   double published;
@@ -279,13 +273,12 @@ std::vector<PhaseRow> friction_rows(int runs) {
 namespace {
 
 /// One curve of the publication's figures 2 and 4: g over y, and how much of the motion sticks.
-void add_curve(const std::string& name, const PublishedInputs& inputs,
+void add_curve(const std::string& name, const FrictionFamily::Curve& curve,
                std::vector<PhaseRow>& rows) {
   constexpr double kEveryM = 0.75;
   constexpr double kWithinM = 3.0;
-  constexpr double kStartSpread = 3.0;
-  constexpr std::uint64_t kSeed = 2100;
-  const FrictionStudy rest = study_published_inputs(inputs, 0.0, 0.0, kSeed);
+  const FrictionStudy& rest = curve.rest;
+  const FrictionStudy& study = curve.started;
   PhaseRow stuck{.table = "figures",
                  .what = "share of flashes that stick, from rest, " + name,
                  .found = rest.stuck_share()};
@@ -295,7 +288,6 @@ void add_curve(const std::string& name, const PublishedInputs& inputs,
     stuck.remark = fmt::format("{} flashes move, {} of {} nodes resolved", rest.points, rest.nodes,
                                kStudyNodes);
   rows.push_back(stuck);
-  const FrictionStudy study = study_published_inputs(inputs, kStartSpread, 0.0, kSeed);
   rows.push_back({.table = "figures",
                   .what = "g(y), relative error, from 24 starts within 3, " + name,
                   .found = study.nodes > 0 ? std::optional{study.friction_error} : std::nullopt,
@@ -320,17 +312,11 @@ void add_curve(const std::string& name, const PublishedInputs& inputs,
 
 }  // namespace
 
-std::vector<PhaseRow> figure_rows() {
-  const std::vector<double> rates = published_inputs("omega");
-  const std::vector<double> swings = published_inputs("P1");
-  const std::vector<double> means = published_inputs("P0");
+std::vector<PhaseRow> figure_rows(const std::vector<FrictionFamily>& families) {
   std::vector<PhaseRow> rows;
-  for (const double rate : rates)
-    add_curve(fmt::format("omega = {}", rate), {{rate}, swings, means}, rows);
-  for (const double swing : swings)
-    add_curve(fmt::format("P1 = {}", swing), {rates, {swing}, means}, rows);
-  for (const double mean : means)
-    add_curve(fmt::format("P0 = {}", mean), {rates, swings, {mean}}, rows);
+  for (const FrictionFamily& family : families)
+    for (const FrictionFamily::Curve& curve : family.curves)
+      add_curve(fmt::format("{} = {}", family.name, curve.value), curve, rows);
   return rows;
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "app/verify/phase/pictures.hpp"
+
 namespace dampline::app {
 
 /// One figure beside the published one.
@@ -31,7 +33,7 @@ struct PhaseRow {
 [[nodiscard]] std::vector<PhaseRow> linearity_rows(int runs);
 [[nodiscard]] std::vector<PhaseRow> friction_rows(int runs);
 /// g(y) at the publication's own inputs: a curve per frequency, amplitude and mean, as its figures.
-[[nodiscard]] std::vector<PhaseRow> figure_rows();
+[[nodiscard]] std::vector<PhaseRow> figure_rows(const std::vector<FrictionFamily>& families);
 
 [[nodiscard]] std::string text_of(const std::vector<PhaseRow>& rows);
 [[nodiscard]] std::string markdown_of(const std::vector<PhaseRow>& rows);
