@@ -56,17 +56,23 @@ std::vector<svg::Point> our_points(const std::vector<PaperLine>& lines, double d
 Plot plot_table(const PaperTable& table) {
   constexpr double kDot = 3.0;
   constexpr double kTwice = 2.0;
-  svg::Panel panel{{"v (mm/s)"}, {"damping force (kN)"}, 320.0};
+  constexpr double kRoom = 1.05;  // beyond the last point
+  double reach_mmps = 0.0;
+  for (const auto& lines : table.lines)
+    reach_mmps = kMillimetre * std::max({reach_mmps / kMillimetre, printed_ends_mps(lines).back(),
+                                         std::abs(lines[kPaperSegments - 1].to_mps)});
+  svg::Panel panel{
+      {"v (mm/s)", -kRoom * reach_mmps, kRoom * reach_mmps}, {"damping force (kN)"}, 320.0};
   panel.title(table.caption);
   for (const std::size_t side : {std::size_t{1}, std::size_t{0}}) {
     const auto& lines = table.lines[side];
     const bool named = side == 1;
     const double sign = named ? 1.0 : -1.0;
     const double level_kn = sign * kKilonewton * table.simulated_n[side];
-    const double reach_mmps = kMillimetre * lines[kPaperSegments - 1].to_mps;
+    const double end_mmps = kMillimetre * lines[kPaperSegments - 1].to_mps;
     panel.band(our_points(lines, -kTwice), our_points(lines, kTwice), svg::Ink::kBlue,
                named ? "two deviations of a run" : "");
-    panel.line({{0.0, level_kn}, {reach_mmps, level_kn}}, {svg::Ink::kGrey, 1.5, true},
+    panel.line({{0.0, level_kn}, {end_mmps, level_kn}}, {svg::Ink::kGrey, 1.5, true},
                named ? "simulated" : "");
     panel.line(our_points(lines, 0.0), {svg::Ink::kBlue}, named ? "found, mean of 9" : "");
     panel.dots(published_points(lines, sign), svg::Ink::kOrange, kDot, named ? "published" : "");

@@ -114,8 +114,11 @@ std::string other_table(const CaseFigures& figures) {
   for (const ParameterFigures& parameter : figures.parameters) {
     out += fmt::format("| {} | {:g} {} | {} |", parameter.name, parameter.truth, parameter.unit,
                        published_text(parameter));
-    for (const Estimate& estimate : parameter.estimates)
-      out += fmt::format(" {:.1e} ({:.1e}) |", estimate.error, estimate.spread);
+    for (const Estimate& estimate : parameter.estimates) {
+      const std::string spread =
+          std::isfinite(estimate.spread) ? fmt::format(" ({:.1e})", estimate.spread) : "";
+      out += fmt::format(" {:.1e}{} |", estimate.error, spread);
+    }
     out += "\n";
   }
   return out;
