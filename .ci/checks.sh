@@ -5,6 +5,7 @@ source app/setup.sh
 
 readonly ci_packages="
 clang-14             the second compiler
+libclang-rt-14-dev   its sanitizers and libFuzzer
 clang-format-14      the layout of the source
 clang-tidy-14        the rules that a compiler does not check
 shellcheck           the same for the scripts
@@ -78,6 +79,9 @@ summary() {
 # What both need: a second compiler's command for every file by itself, and its sanitized build.
 configure_separate() { configure separate build/separate -DDAMPLINE_BENCH=ON -DCMAKE_CXX_COMPILER=clang++-14; }
 build_sanitized() {
-  build "asan-ubsan" asan-ubsan build/asan-ubsan all -DDAMPLINE_BENCH=OFF -DCMAKE_CXX_COMPILER=clang++-14
+  build "asan-ubsan" asan-ubsan build/asan-ubsan "all fuzz" -DDAMPLINE_BENCH=OFF -DDAMPLINE_FUZZ=ON \
+    -DCMAKE_CXX_COMPILER=clang++-14
 }
+# fuzz TIME: every reader for so long, two at a time, in the sanitized build.
+fuzz() { DAMPLINE_FUZZ_BUILD=build/asan-ubsan tests/fuzz/run "$1"; }
 mkdir -p "$logs"

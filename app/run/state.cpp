@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <concepts>
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <type_traits>
 
 #include "app/error.hpp"
@@ -47,38 +47,52 @@ class Writer {
   std::string bytes_;
 };
 
-/// Precondition of every read: the bytes are there. Only decode_state() knows and checks how many.
+/// Precondition of every read: the bytes are there. check_frame() and decode_state() know how many.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_{bytes} {}
-  template <std::integral T>
+  template <class T>
+  requires std::integral<T> || std::floating_point<T>
   void operator()(T& value) {
-    std::make_unsigned_t<T> bits = 0;
-    if (rest_.size() < sizeof(T)) {
-      short_ = true;
-    } else {
-      for (std::size_t i = sizeof(T); i-- > 0;)
-        bits = static_cast<std::make_unsigned_t<T>>((std::uint64_t{bits} << 8U) |
-                                                    static_cast<unsigned char>(rest_[i]));
-      rest_.remove_prefix(sizeof(T));
-    }
-    value = static_cast<T>(bits);
-  }
-  void operator()(double& value) {
-    std::uint64_t bits = 0;
-    (*this)(bits);
-    value = std::bit_cast<double>(bits);
+    std::array<char, sizeof(T)> bytes{};
+    rest_.copy(bytes.data(), bytes.size());
+    rest_.remove_prefix(bytes.size());
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+    value = std::bit_cast<T>(bytes);
   }
   template <class T, std::size_t N>
   void operator()(std::array<T, N>& values) {
     for (T& value : values) (*this)(value);
   }
-  /// Everything was there, and nothing is left.
-  [[nodiscard]] bool complete() const { return !short_ && rest_.empty(); }
+  /// All of a state is such numbers, a megabyte of them.
+  template <std::size_t N>
+  requires(std::endian::native == std::endian::little) void operator()(
+      std::array<double, N>& values) {
+    std::memcpy(values.data(), rest_.data(), sizeof(values));
+    rest_.remove_prefix(sizeof(values));
+  }
 
  private:
   std::string_view rest_;
-  bool short_{false};
+};
+
+/// Counts what would be written.
+class Measure {
+ public:
+  template <class T>
+  requires std::integral<T> || std::floating_point<T>
+  void operator()(const T& /*value*/) { bytes_ += sizeof(T); }
+  template <class T, std::size_t N>
+  void operator()(const std::array<T, N>& values) {
+    if constexpr (std::is_arithmetic_v<T>)
+      bytes_ += N * sizeof(T);
+    else
+      for (const T& value : values) (*this)(value);
+  }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::size_t bytes_{0};
 };
 
 // Whoever adds a field must add it below, and raise kVersion: the sizes notice when one was
@@ -129,10 +143,15 @@ void walk_counts(Archive& archive, C& c) {
 }
 
 /// One list of the fields serves both directions.
+template <class Archive, class Header>
+void walk_head(Archive& archive, Header& header) {
+  walk_header(archive, header);
+  walk_counts(archive, header.counts);
+}
+
 template <class Archive, class S>
 void walk(Archive& archive, S& statistics) {
-  walk_header(archive, statistics.header);
-  walk_counts(archive, statistics.header.counts);
+  walk_head(archive, statistics.header);
   walk_factors(archive, statistics.total);
   const std::size_t entries = std::min<std::size_t>(statistics.header.entry_count, kEntries);
   for (std::size_t i = 0; i < entries; ++i) walk_factors(archive, statistics.entries[i]);
@@ -193,12 +212,23 @@ std::string encode_state(const Statistics& statistics) {
 }
 
 void decode_state(std::string_view bytes, const std::string& origin, Statistics& out) {
-  Reader reader{check_frame(bytes, origin)};
-  const auto read = std::make_unique<Statistics>();
-  walk(reader, *read);
-  if (!reader.complete() || read->header.entry_count > kEntries)
+  const std::string_view payload = check_frame(bytes, origin);
+  Measure head;
+  StatisticsHeader header;
+  walk_head(head, header);
+  if (payload.size() >= head.bytes()) {
+    Reader first{payload};
+    walk_head(first, header);
+  }
+  Measure factors;
+  walk_factors(factors, out.total);
+  const std::size_t needed = head.bytes() + (std::size_t{header.entry_count} + 1) * factors.bytes();
+  if (header.entry_count > kEntries || payload.size() != needed)
     fail(origin, "has a payload of another length than its entries need");
-  out = *read;
+  const std::size_t before = std::min<std::size_t>(out.header.entry_count, kEntries);
+  for (std::size_t i = header.entry_count; i < before; ++i) out.entries[i].clear();
+  Reader reader{payload};
+  walk(reader, out);
 }
 
 void merge_state(Statistics& into, const Statistics& from, const std::string& origin) {

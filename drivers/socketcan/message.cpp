@@ -78,8 +78,15 @@ T control_payload(const cmsghdr& header) noexcept {
   return value;
 }
 
+/// 0, no stamp, where the time is none, or so far that a sum of two would overflow: before 1970 and
+/// after 2106.
+std::int64_t nanoseconds(std::int64_t seconds, std::int64_t rest_ns) noexcept {
+  constexpr std::int64_t kMostSeconds = std::int64_t{1} << 32U;
+  if (seconds < 0 || seconds >= kMostSeconds || rest_ns < 0 || rest_ns >= hal::kSecondNs) return 0;
+  return seconds * hal::kSecondNs + rest_ns;
+}
 std::int64_t nanoseconds(const timespec& time) noexcept {
-  return static_cast<std::int64_t>(time.tv_sec) * hal::kSecondNs + time.tv_nsec;
+  return nanoseconds(time.tv_sec, time.tv_nsec);
 }
 
 void take_control(const cmsghdr& header, MessageInfo& info) noexcept {
@@ -94,8 +101,9 @@ void take_control(const cmsghdr& header, MessageInfo& info) noexcept {
       break;
     case SO_TIMESTAMP: {
       const auto time = control_payload<timeval>(header);
-      info.stamp.software_ns =
-          static_cast<std::int64_t>(time.tv_sec) * hal::kSecondNs + time.tv_usec * 1000;
+      constexpr std::int64_t kMostMicroseconds = 1'000'000;
+      const bool is_one = time.tv_usec >= 0 && time.tv_usec < kMostMicroseconds;
+      info.stamp.software_ns = is_one ? nanoseconds(time.tv_sec, time.tv_usec * 1000) : 0;
       break;
     }
     case SO_RXQ_OVFL:
@@ -110,7 +118,11 @@ void take_control(const cmsghdr& header, MessageInfo& info) noexcept {
 
 MessageInfo read_info(msghdr& header) noexcept {
   MessageInfo info;
+  const auto* const begin = static_cast<const std::byte*>(header.msg_control);
   for (cmsghdr* at = CMSG_FIRSTHDR(&header); at != nullptr; at = CMSG_NXTHDR(&header, at)) {
+    const auto place =
+        static_cast<std::size_t>(reinterpret_cast<const std::byte*>(at) - begin);  // NOLINT
+    if (at->cmsg_len > header.msg_controllen - place) break;  // libc looks at that of the next only
     if (at->cmsg_level == SOL_SOCKET) take_control(*at, info);
   }
   return info;
