@@ -5,12 +5,14 @@
 
 #include "app/program.hpp"
 #include "app/run/provenance.hpp"
+#include "app/verbs/programs.hpp"
 #include "app/verbs/verbs.hpp"
-#include "app/verbs/verify.hpp"
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view{argv[1]} == "verify")
     return dampline::app::exit_code([&] { return dampline::app::run_verify(argv + 1); });
+  if (argc > 1 && dampline::app::asks_for_method(argv + 1))
+    return dampline::app::exit_code([&] { return dampline::app::run_method(argv + 1); });
   CLI::App program{
       "Identifies how a freight-car truck dissipates energy, from accelerometers in service"};
   program.name("dampline");

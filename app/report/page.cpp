@@ -55,6 +55,19 @@ constexpr std::string_view kForceText =
     "An excerpt of the measured force beside the force of the fitted model, over time and over "
     "velocity. Where the two clouds part, the model lacks something.";
 
+constexpr std::string_view kWindowText =
+    "Each dot is what one window of rows alone says, with two of the deviations that it states "
+    "itself. Scatter beyond them is what such windows cannot tell: a parameter that changes, a "
+    "term that is missing, noise that neighbouring rows share.";
+constexpr std::string_view kCovText =
+    "Coefficient of variation over time, on a logarithmic axis: of windows, the scatter of all "
+    "estimates so far over their mean; of the whole record, deviation over estimate. The numbers "
+    "are in cov.csv.";
+constexpr std::string_view kTermSetText =
+    "The error that each set of terms leaves. One that falls when a term goes, held out, says that "
+    "the term was too many; one that falls when a term is added, that it was missing. The numbers "
+    "are in term_sets.csv.";
+
 constexpr std::string_view kResidualText =
     "What the model leaves of the force, before and after the effects were added. A mean that is "
     "not zero over deflection or velocity is a law that is missing; what has no place there but a "
@@ -114,6 +127,9 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
                              result.trust == Trust::kTrusted ? kBandHolds : kBandDoesNot)));
   body += section("Parameters", parameter_section(result)) +
           section("The model before", base_section(result));
+  body += section("Terms", term_section(result));
+  body += section("Other sets of terms", figure(plot_term_sets(result), "term-sets", kTermSetText) +
+                                             term_set_section(result));
   body += section("Quality", quality_section(result));
   body += section("Data quality",
                   figure(plot_faults(result), "faults", kFaultText) + fault_section(result));
@@ -123,6 +139,8 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
   body += section("Phase space", phase_section(result));
   body += section("How the estimate settled",
                   figure(plot_convergence(result), "convergence", kConvergenceText));
+  body += section("Windows", figure(plot_windows(result), "windows", kWindowText));
+  body += section("Coefficients of variation", figure(plot_cov(result), "cov", kCovText));
   body += section("Measured and fitted force", figure(plot_force(result), "force", kForceText));
   body += section("Motion",
                   figure(plot_motion(result), "motion", truck ? kMotionText : kRigMotionText));

@@ -66,6 +66,15 @@ template <class Row>
 /// One row per fault and channel over the whole record: what it spoils, and where it was seen.
 [[nodiscard]] Plot plot_faults(const RunResult& result);
 
+// Of a run with row_method; else nothing.
+
+/// The estimate of each window, with the deviation that it states itself.
+[[nodiscard]] Plot plot_windows(const RunResult& result);
+/// Coefficients of variation over time.
+[[nodiscard]] Plot plot_cov(const RunResult& result);
+/// Fitted and held-out errors of the term sets.
+[[nodiscard]] Plot plot_term_sets(const RunResult& result);
+
 // Of an explanation.
 
 /// What is left before and after, over deflection, velocity, frequency and time.

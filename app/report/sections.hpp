@@ -31,6 +31,13 @@ namespace dampline::app {
 /// Empty for a rig's record.
 [[nodiscard]] std::string fault_section(const RunResult& result);
 
+// Of a run with row_method; else empty.
+
+/// Term, estimate, deviation, t and coefficient of variation of each term, and the errors.
+[[nodiscard]] std::string term_section(const RunResult& result);
+/// Sets of terms with one less and one more.
+[[nodiscard]] std::string term_set_section(const RunResult& result);
+
 // Of an explanation.
 
 /// The verdict and the error before and after in one sentence.

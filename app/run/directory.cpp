@@ -24,11 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
 /// What a run writes beside the black box.
-constexpr std::array<std::string_view, 19> kRunFiles{
-    kMarker,        "parameters.json", "curve.csv",       "densities.csv", "phase.json",
-    "state.dls",    "report.html",     "convergence.csv", "excluded.csv",  "motion.csv",
-    "force.csv",    "events.csv",      "lateness.csv",    "live.json",     "explanation.json",
-    "residual.csv", "loops.csv",       "law.csv",         "prediction.csv"};
+constexpr std::array<std::string_view, 22> kRunFiles{
+    kMarker,        "parameters.json", "curve.csv",        "densities.csv", "phase.json",
+    "state.dls",    "report.html",     "convergence.csv",  "excluded.csv",  "motion.csv",
+    "force.csv",    "windows.csv",     "cov.csv",          "term_sets.csv", "events.csv",
+    "lateness.csv", "live.json",       "explanation.json", "residual.csv",  "loops.csv",
+    "law.csv",      "prediction.csv"};
 
 bool is_run_file(const std::string& name) {
   return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end() ||
@@ -271,6 +272,9 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   directory.write("excluded.csv", to_csv(result.excluded));
   if (!result.events.empty()) directory.write("events.csv", to_csv(result.events));
   if (!result.lateness.empty()) directory.write("lateness.csv", to_csv(result.lateness));
+  if (!result.windows.rows.empty()) directory.write("windows.csv", to_csv(result.windows));
+  if (!result.cov.empty()) directory.write("cov.csv", to_csv(result.cov, result.parameters));
+  if (!result.term_sets.empty()) directory.write("term_sets.csv", to_csv(result.term_sets));
   stage_evidence(result.evidence, directory);
   directory.write("run.toml", files.run_toml);
 }
@@ -295,6 +299,9 @@ RunFiles read_files(const std::filesystem::path& run) {
   files.result.excluded = read_extra(run / "excluded.csv", read_table<Excluded>);
   files.result.events = read_extra(run / "events.csv", read_table<RunEvent>);
   files.result.lateness = read_extra(run / "lateness.csv", read_table<LatenessRow>);
+  files.result.windows = read_extra(run / "windows.csv", read_convergence);
+  files.result.cov = read_extra(run / "cov.csv", read_cov);
+  files.result.term_sets = read_extra(run / "term_sets.csv", read_table<TermSet>);
   files.result.evidence = read_evidence(run);
   return files;
 }

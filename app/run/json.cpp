@@ -198,6 +198,11 @@ void list_members(Archive&& a, Of<Parameter> auto& p) {
   a("value", p.value);
   a("std", p.std);
   a("unit", p.unit);
+  if (a.has("term", !p.term.empty())) {
+    a("term", p.term);
+    a.constant("t", p.value / p.std);
+    a("cov", p.cov);
+  }
   if (!a.has("correlation", p.correlation != 0.0)) return;
   a.object("correlation", [&](auto c) {
     c("with", p.twin);
@@ -244,6 +249,18 @@ void list_members(Archive&& a, Of<BaseLaw> auto& b) {
 }
 
 template <class Archive>
+void list_members(Archive&& a, Of<RowMethod> auto& m) {
+  a.constant("name", "wavelet");
+  a("wavelet", m.wavelet);
+  a("level", m.level);
+  a("step_s", m.step_s);
+  a("window_rows", m.window_rows);
+  a("gated", m.gated);
+  a("mse_percent", m.mse_percent);
+  a("held_out_mse_percent", m.held_out_mse_percent);
+}
+
+template <class Archive>
 void list_members(Archive&& a, Of<RunResult> auto& r) {
   a("parameters", r.parameters);
   if (a.has("base", r.base.has_value())) a("base", r.base);
@@ -269,6 +286,7 @@ void list_members(Archive&& a, Of<RunResult> auto& r) {
   if (a.has("events_more", r.events_more > 0)) a("events_more", r.events_more);
   if (a.has("faults", r.kind == "truck" || !r.faults.list.empty())) list_members(a, r.faults);
   if (a.has("methods", !r.methods.empty())) a("methods", r.methods);
+  if (a.has("method", r.row_method.has_value())) a("method", r.row_method);
   if (a.has("live", r.live.has_value())) a("live", r.live);
 }
 

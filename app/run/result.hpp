@@ -160,6 +160,9 @@ struct Parameter {
   /// Another one that it is most correlated with in this record; 0: not worked out.
   std::string twin{};
   double correlation{0.0};
+  /// Of the method of wavelet rows: the term as it was asked for, and its coefficient of variation.
+  std::string term{};
+  double cov{0.0};
 };
 
 /// Otherwise only what the two do together is known.
@@ -201,6 +204,32 @@ struct BaseLaw {
   std::vector<std::string> model;
   std::vector<Parameter> parameters;
   Fit fit;
+};
+
+/// A set of terms that was fitted beside the one asked for: what was changed, the t of the term
+/// that it was changed by, and the errors. Not a number: the record does not determine the set.
+struct TermSet {
+  std::string change;  ///< "as asked", "without x^3", "with v^2"
+  double t{0.0};       ///< of that term, in the set that has it
+  double mse_percent{0.0};
+  double held_out_mse_percent{0.0};
+};
+
+/// Coefficients of variation at one time, in the order of the parameters.
+struct CovRow {
+  double time_s{0.0};
+  std::vector<double> cov;
+};
+
+/// How wavelet rows were made of a record and combined.
+struct RowMethod {
+  std::string wavelet;  ///< "D8"
+  std::uint64_t level{0};
+  double step_s{0.0};                        ///< of the rows' derivatives
+  std::uint64_t window_rows{0};              ///< 0: least squares over all rows
+  bool gated{false};                         ///< rows across a reversal were left out
+  std::vector<double> mse_percent;           ///< of each mass
+  std::vector<double> held_out_mse_percent;  ///< of rows that were not fitted
 };
 
 struct CurveRow {
@@ -316,6 +345,11 @@ struct RunResult {
   std::optional<LiveFigures> live;
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out
   Evidence evidence;                  ///< of an explanation
+  // Of the method of wavelet rows.
+  std::optional<RowMethod> row_method;
+  Convergence windows;      ///< the estimates of each window
+  std::vector<CovRow> cov;  ///< over time
+  std::vector<TermSet> term_sets;
 };
 
 }  // namespace dampline::app

@@ -127,6 +127,11 @@ constexpr auto kTable<LatenessRow> = table("from_us,to_us,frames\n", "{:.9g},{:.
                                            &LatenessRow::from_us, &LatenessRow::to_us,
                                            &LatenessRow::frames);
 
+template <>
+constexpr auto kTable<TermSet> = table("change,t,mse_percent,held_out_mse_percent\n",
+                                       "{},{:.6g},{:.6g},{:.6g}\n", &TermSet::change, &TermSet::t,
+                                       &TermSet::mse_percent, &TermSet::held_out_mse_percent);
+
 template <class T>
 void read_cell(std::string_view cell, T& value) {
   if constexpr (std::is_same_v<T, std::string>)
@@ -171,6 +176,7 @@ template std::string to_csv(const std::vector<ForceRow>&);
 template std::string to_csv(const std::vector<Excluded>&);
 template std::string to_csv(const std::vector<RunEvent>&);
 template std::string to_csv(const std::vector<LatenessRow>&);
+template std::string to_csv(const std::vector<TermSet>&);
 template std::vector<ResidualRow> read_table(std::string_view, const std::string&);
 template std::vector<LoopRow> read_table(std::string_view, const std::string&);
 template std::vector<LawRow> read_table(std::string_view, const std::string&);
@@ -179,6 +185,7 @@ template std::vector<ForceRow> read_table(std::string_view, const std::string&);
 template std::vector<Excluded> read_table(std::string_view, const std::string&);
 template std::vector<RunEvent> read_table(std::string_view, const std::string&);
 template std::vector<LatenessRow> read_table(std::string_view, const std::string&);
+template std::vector<TermSet> read_table(std::string_view, const std::string&);
 
 std::string to_csv(const std::vector<CurveRow>& curve, const std::vector<MethodSummary>& methods) {
   std::string out = "velocity_mps,force_n,std_n,samples";
@@ -257,6 +264,28 @@ Convergence read_convergence(std::string_view text, const std::string& origin) {
         bracket == std::string::npos ? "" : name.substr(bracket + 2, name.size() - bracket - 3));
   }
   return convergence;
+}
+
+std::string to_csv(const std::vector<CovRow>& rows, const std::vector<Parameter>& parameters) {
+  std::string out = "time_s";
+  for (const Parameter& p : parameters) out += fmt::format(",{}_cov", p.name);
+  out += '\n';
+  for (const CovRow& row : rows) {
+    out += fmt::format("{:.9g}", row.time_s);
+    for (const double cov : row.cov) out += fmt::format(",{:.6g}", cov);
+    out += '\n';
+  }
+  return out;
+}
+
+std::vector<CovRow> read_cov(std::string_view text, const std::string& origin) {
+  std::vector<CovRow> out;
+  read_rows(text, origin, [&](const Cells& c) {
+    CovRow row{number(c.at(0)), {}};
+    for (std::size_t i = 1; i < c.size(); ++i) row.cov.push_back(number(c[i]));
+    out.push_back(std::move(row));
+  });
+  return out;
 }
 
 std::string to_csv(const std::vector<PredictedRow>& prediction) {

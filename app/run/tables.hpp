@@ -11,7 +11,7 @@ namespace dampline::app {
 // The tables of a run directory as CSV text with a header, and back. Times are in seconds from the
 // beginning of the record. The readers throw RunError naming `origin` and the line.
 
-/// Of ResidualRow, LoopRow, LawRow, MotionRow, ForceRow, Excluded, RunEvent, LatenessRow.
+/// Of ResidualRow, LoopRow, LawRow, MotionRow, ForceRow, Excluded, RunEvent, LatenessRow, TermSet.
 template <class Row>
 [[nodiscard]] std::string to_csv(const std::vector<Row>& rows);
 template <class Row>
@@ -22,6 +22,9 @@ template <class Row>
                                  const std::vector<MethodSummary>& methods);
 [[nodiscard]] std::string to_csv(const std::vector<DensityTable>& densities);
 [[nodiscard]] std::string to_csv(const Convergence& convergence);
+/// cov.csv; `parameters` names the columns.
+[[nodiscard]] std::string to_csv(const std::vector<CovRow>& rows,
+                                 const std::vector<Parameter>& parameters);
 [[nodiscard]] std::string to_csv(const std::vector<PredictedRow>& prediction);
 
 /// Fills the curve, and the curves of the methods of `result`, which are there already.
@@ -29,6 +32,7 @@ void read_curve(std::string_view text, const std::string& origin, RunResult& res
 [[nodiscard]] std::vector<DensityTable> read_densities(std::string_view text,
                                                        const std::string& origin);
 [[nodiscard]] Convergence read_convergence(std::string_view text, const std::string& origin);
+[[nodiscard]] std::vector<CovRow> read_cov(std::string_view text, const std::string& origin);
 [[nodiscard]] std::vector<PredictedRow> read_prediction(std::string_view text,
                                                         const std::string& origin);
 

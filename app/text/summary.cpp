@@ -34,7 +34,7 @@ constexpr std::array<Entry, 13> kParameters{{
     {"noise", "sensor noise of one channel, rms"},
 }};
 
-constexpr std::array<Entry, 37> kCounts{{
+constexpr std::array<Entry, 39> kCounts{{
     {"samples", "samples read"},
     {"gaps", "gaps in the sequence"},
     {"lost", "samples lost in the gaps"},
@@ -49,6 +49,8 @@ constexpr std::array<Entry, 37> kCounts{{
     {"blocks_used", "stretches of equal length that hold equations"},
     {"rows", "equations used"},
     {"rows_still", "equations left out: too little motion"},
+    {"windows", "windows of rows that determine all terms"},
+    {"windows_undetermined", "windows that do not"},
     {"frames", "CAN frames read"},
     {"frames_sent", "CAN frames that were sent, as their counters tell"},
     {"frames_processed", "of these: became part of a sample"},
@@ -168,6 +170,22 @@ std::string summarize(const RunResult& result) {
   for (const std::string& warning : result.warnings)
     out += fmt::format("  {:<20} {}\n", "warning", warning);
   return out;
+}
+
+std::string describe_rows(const RunResult& result) {
+  const RowMethod& m = result.row_method.value();
+  const auto count = [&](std::string_view name) {
+    for (const auto& [counted, value] : result.counts)
+      if (counted == name) return format_count(value);
+    return std::string{"0"};
+  };
+  const std::string combined =
+      m.window_rows == 0
+          ? fmt::format("least squares over {} rows", count("rows"))
+          : fmt::format("{} windows of {} rows, mean and scatter; {} windows undetermined",
+                        count("windows"), m.window_rows, count("windows_undetermined"));
+  return fmt::format("{} at level {} (step {:.4g} ms), {}{}", m.wavelet, m.level, 1e3 * m.step_s,
+                     combined, m.gated ? "; none across a reversal" : "");
 }
 
 std::string describe_alarm(const AlarmFinding& alarm) {

@@ -17,6 +17,9 @@ namespace dampline::app {
 /// left out.
 [[nodiscard]] std::string summarize(const RunResult& result);
 
+/// Of a run with row_method: "D8 at level 2 (step 4 ms), least squares over 1 234 rows".
+[[nodiscard]] std::string describe_rows(const RunResult& result);
+
 /// "+12.1 ± 0.9 % at 150 s" and the like.
 [[nodiscard]] std::string describe_drift(const DriftFinding& drift);
 /// "coulomb changed by -12.1 % since 4210 s, told at 4450 s".

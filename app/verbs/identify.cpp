@@ -177,6 +177,7 @@ namespace {
 struct IdentifyFlags : RunFlags {
   SourceOptions source;
   std::string methods;
+  std::string method;  ///< of the program that main() becomes; here for the help only
   LiveOptions live;
   std::string blackbox;
   bool no_blackbox{false};
@@ -353,6 +354,10 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
                    "of a truck: wavelet, or all: Fokker-Planck, known input and phase beside it; "
                    "default: as configured, else wavelet")
       ->check(CLI::IsMember({"wavelet", "all"}));
+  verb->add_option(
+      "--method", options->method,
+      "of a rig: wavelet, with --terms \"v, x, x^3, sign(v)\": terms of your choice by "
+      "the rows of Ghanem and Romeo; its options: identify --method wavelet --help");
   verb->add_option("--out", options->out,
                    "run directory; default: a new one named after the source");
   verb->add_flag("--force", options->force, "replace an earlier run in --out");

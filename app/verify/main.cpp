@@ -135,7 +135,7 @@ int verify(const std::string& name, VerifyOptions options, const Measured& measu
 }  // namespace
 }  // namespace dampline::app
 
-/// `dampline verify` becomes this program; see app/verbs/verify.hpp.
+/// `dampline verify` becomes this program; see app/verbs/programs.hpp.
 int main(int argc, char** argv) {
   using namespace dampline::app;
   CLI::App program{"Recompute published cases and print them beside the published figures"};

@@ -36,6 +36,7 @@ const std::vector<Room>& rooms() {
       {"drivers/", {"dampline/", "hal/", "drivers/"}, true},
       {"sim_hw/", {"dampline/", "hal/", "sim_hw/"}, true},
       {"app/verify/", {"dampline/", "published/", "hal/", "sim_hw/", "app/"}, true},
+      {"app/wavelet/", {"dampline/", "published/", "hal/", "drivers/", "app/"}, true},
       {"app/diagnosis/", {"dampline/", "hal/", "drivers/", "app/"}, true},
       {"app/", {"dampline/", "hal/", "drivers/", "sim_hw/", "app/"}, true}};
   return kRooms;
