@@ -7,15 +7,20 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <string>
 
 #include "app/error.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 
-/// Prints the error and returns the exit code.
+/// Prints the error and returns the exit code. Further lines are indented, so that no text from
+/// outside passes for a message of its own.
 inline int fail(const char* text, int code) {
-  fmt::print(stderr, "dampline: error: {}\n", drivers::printable(text));
+  std::string lines = drivers::printable(text, true);
+  for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; ++at)
+    lines.insert(at + 1, "  ");
+  fmt::print(stderr, "dampline: error: {}\n", lines);
   return code;
 }
 

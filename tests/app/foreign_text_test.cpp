@@ -99,6 +99,15 @@ TEST(ForeignFile, ThatNeverEndsIsRefused) {
   EXPECT_THAT(config.error, HasSubstr("larger than 1048576 bytes"));
 }
 
+TEST(ErrorsOfSeveralLines, AreReadAsLinesAndPassForNoOtherMessage) {
+  const Program program;
+  program.write("rig.csv", "time_s,deflection_m,force\n0,0,0\n0.01,0,0\n");
+  EXPECT_THAT(program.run("identify rig.csv").error,
+              HasSubstr("\n  [input.columns]\n  force_n = "));
+  const auto outcome = program.run("identify 'no\ndampline: error: forged'");
+  EXPECT_THAT(outcome.error, Not(HasSubstr("\ndampline:")));
+}
+
 TEST(Overwriting, NeedsForce) {
   const Program program;
   for (const char* file : {"run.log", "run.csv", "s.dbc", "s.toml", "truth.csv"})
