@@ -78,10 +78,10 @@ summary() {
 
 # What both need: a second compiler's command for every file by itself, and its sanitized build.
 configure_separate() { configure separate build/separate -DDAMPLINE_BENCH=ON -DCMAKE_CXX_COMPILER=clang++-14; }
+# build_sanitized FOLDER TARGETS [CMake options]
 build_sanitized() {
-  build "asan-ubsan" asan-ubsan build/asan-ubsan "all fuzz" -DDAMPLINE_BENCH=OFF -DDAMPLINE_FUZZ=ON \
-    -DCMAKE_CXX_COMPILER=clang++-14
+  local folder=$1 targets=$2
+  shift 2
+  build "asan-ubsan" asan-ubsan "$folder" "$targets" -DDAMPLINE_BENCH=OFF -DCMAKE_CXX_COMPILER=clang++-14 "$@"
 }
-# fuzz TIME: every reader for so long, two at a time, in the sanitized build.
-fuzz() { DAMPLINE_FUZZ_BUILD=build/asan-ubsan tests/fuzz/run "$1"; }
 mkdir -p "$logs"

@@ -99,7 +99,7 @@ std::optional<MassColumn> find(const std::string& path, const std::vector<Cell>&
   }
   if (fitting.empty()) return std::nullopt;
   if (fitting.size() > 1)
-    throw RunError{fmt::format("{}: {} may be \"{}\" or \"{}\": rename one of them", path,
+    throw RunError{fmt::format(R"({}: {} may be "{}" or "{}": rename one of them)", path,
                                sought.canonical, fitting[0]->header, fitting[1]->header)};
   return taken(path, sought, *fitting.front());
 }
@@ -142,6 +142,7 @@ std::vector<Sought> motion_of(int masses) {
 
 std::vector<Sought> forces_of(int masses) {
   std::vector<Sought> out;
+  out.reserve(static_cast<std::size_t>(masses));
   for (int m = 0; m < masses; ++m)
     out.push_back(
         {Role::kForce, Quantity::kForce, m, numbered("force", masses, m, "n"), masses > 1});
@@ -198,6 +199,7 @@ std::vector<MassColumn> find_mass_columns(const std::string& path, int masses) {
     missing.push_back(fmt::format("{}", fmt::join(forces, " or ")));
   if (missing.empty()) return out;
   std::vector<std::string> there;
+  there.reserve(cells.size());
   for (const Cell& cell : cells) there.push_back(cell.header);
   throw RunError{
       fmt::format("{}: found no column for {}; nor, for accelerations, for {}; columns: {}", path,
