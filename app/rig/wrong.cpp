@@ -21,14 +21,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestJudged = 200;
-constexpr double kUsualShare = 0.9;      // of the second differences
-constexpr double kBeyond = 12.0;         // times that: an edge of something
-constexpr std::size_t kLongestRun = 12;  // samples; what stays longer is no wrong value
-constexpr std::size_t kReplaced = 3;     // samples in a row at most
-constexpr std::size_t kAround = 8;       // samples on either side that a run is held against
-constexpr double kUnlike = 4.0;          // times their second differences
-constexpr double kAbove = 1.5;           // times their span
-constexpr double kOutside = 0.5;         // of the usual range, beyond it
+constexpr double kUsualShare = 0.9;        // of the second differences
+constexpr double kBeyond = 12.0;           // times that: an edge of something
+constexpr std::size_t kLongestRun = 12;    // samples; what stays longer is no wrong value
+constexpr std::size_t kReplaced = 3;       // samples in a row at most
+constexpr std::size_t kAround = 8;         // samples on either side that a run is held against
+constexpr double kUnlike = 4.0;            // times their second differences
+constexpr double kAbove = 1.5;             // times their span
+constexpr double kOutside = 0.5;           // of the usual range, beyond it
+constexpr std::ptrdiff_t kMostWrong = 12;  // runs in a record; what comes oftener is the rig's own
+constexpr double kBlow = 20.0;             // times the usual range: no blow is larger
 constexpr double kFarSamples = 1e12;
 
 /// A column of a record.
@@ -37,11 +39,12 @@ struct Channel {
   const char* unit;
   double Line::*value;
   bool jumps;  ///< the quantity itself may change between two samples
+  bool blows;  ///< and blows show in it
 };
-constexpr std::array kChannels{Channel{"deflection_m", "m", &Line::deflection_m, false},
-                               Channel{"velocity_mps", "m/s", &Line::velocity_mps, true},
-                               Channel{"force_n", "N", &Line::force_n, true},
-                               Channel{"accel_mps2", "m/s^2", &Line::accel_mps2, true}};
+constexpr std::array kChannels{Channel{"deflection_m", "m", &Line::deflection_m, false, false},
+                               Channel{"velocity_mps", "m/s", &Line::velocity_mps, true, false},
+                               Channel{"force_n", "N", &Line::force_n, true, true},
+                               Channel{"accel_mps2", "m/s^2", &Line::accel_mps2, true, true}};
 
 /// Neighbouring samples, the last one included.
 struct Run {
@@ -98,6 +101,14 @@ class Screen {
       }
     }
     return out;
+  }
+
+  /// Takes out what comes too often for errors and is small enough for a blow.
+  void leave_blows(std::vector<Wrong>& found) const {
+    const double largest = kBlow * (high_ - low_) / (1.0 + 2.0 * kOutside);
+    const auto is_blow = [&](const Wrong& wrong) { return wrong.size < largest; };
+    if (std::count_if(found.begin(), found.end(), is_blow) > kMostWrong)
+      std::erase_if(found, is_blow);
   }
 
  private:
@@ -197,7 +208,7 @@ using Lines = std::vector<Line>;
 using Changes = std::map<std::size_t, Line>;  ///< by row
 
 /// Takes the wrong values of one channel out of the lines.
-void screen(const Channel& channel, Lines& lines, Changes& changes, DataFaults& faults) {
+void screen_channel(const Channel& channel, Lines& lines, Changes& changes, DataFaults& faults) {
   std::vector<double> values;
   std::vector<double> deflection_m;
   std::vector<std::size_t> rows;
@@ -212,8 +223,10 @@ void screen(const Channel& channel, Lines& lines, Changes& changes, DataFaults& 
   const double start_s = lines.front().time_s;
   const auto since_s = [&](std::size_t at) { return lines[rows[at]].time_s - start_s; };
   FaultFinding fault{"wrong_value", channel.name, 0.0, 0.0, 0.0, channel.unit, 0, {}};
-  for (const Screen::Wrong& wrong :
-       Screen{std::move(values), std::move(deflection_m), channel.jumps}.find()) {
+  Screen screen{std::move(values), std::move(deflection_m), channel.jumps};
+  std::vector<Screen::Wrong> found = screen.find();
+  if (channel.blows) screen.leave_blows(found);
+  for (const Screen::Wrong& wrong : found) {
     const auto& [first, last] = wrong.run;
     for (std::size_t i = first; i <= last; ++i) {
       Line& line = lines[rows[i]];
@@ -365,7 +378,7 @@ Record screened_record(Record record, bool skip_bad_lines) {
   if (!dropped->empty())
     std::erase_if(lines, [&](const Line&) { return static_cast<bool>((*dropped)[row++]); });
   auto changes = std::make_shared<Changes>();
-  for (const Channel& channel : kChannels) screen(channel, lines, *changes, record.faults);
+  for (const Channel& channel : kChannels) screen_channel(channel, lines, *changes, record.faults);
   if (record.faults.list.empty()) return record;
   std::vector<std::string> notes;
   for (const FaultFinding& fault : record.faults.list) notes.push_back(note_of(fault));

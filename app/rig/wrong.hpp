@@ -14,8 +14,9 @@ namespace dampline::app::rig {
 /// neighbours outside, by twelve times what nine tenths of all samples do and by four times what
 /// the sixteen nearest do. Velocity, force and acceleration may jump with the motion: there a
 /// run must lie outside the usual range, or fall where the motion does not turn.
-/// Records of fewer than 200 rows are not judged. Throws RunError naming the line of a wrong time
-/// that is not skipped.
+/// More than twelve runs of a force or an acceleration, each below twenty times its usual range,
+/// are blows: they stay. Records of fewer than 200 rows are not judged. Throws RunError naming the
+/// line of a wrong time that is not skipped.
 [[nodiscard]] Record screened_record(Record record, bool skip_bad_lines);
 
 }  // namespace dampline::app::rig
