@@ -83,6 +83,22 @@ TEST(BlockStore, ForgettingIsAnExponentialWeightByTheAgeInBlocks) {
               20.0 * (1.0 - std::exp(-100.0 / 12.5)) / (1.0 - std::exp(-1.0 / 12.5)), 1e-9);
 }
 
+// An hour's time constant once made entries of six minutes from the start, and no estimate before
+// there were some.
+TEST(BlockStore, ALongMemoryBeginsWithShortEntries) {
+  for (const Memory memory : {Memory::kForgetting, Memory::kWindow}) {
+    const auto store = store_with({.memory = memory, .memory_blocks = 1800.0});
+    feed(*store, random_rows(20, 1, 9), kMany);
+    EXPECT_EQ(entries_of(*store).size(), 20U);
+    feed(*store, random_rows(5000, 1, 9), kMany);
+    const double covered = memory == Memory::kWindow ? 1800.0 : 5000.0;
+    double blocks = 0.0;
+    for (const ScaleFactors& entry : entries_of(*store)) blocks += entry.blocks;
+    EXPECT_NEAR(blocks, covered, store->blocks_per_entry());
+    EXPECT_GE(entries_of(*store).size(), kEntries / 2);
+  }
+}
+
 TEST(BlockStore, NothingIsForgottenWithoutRows) {
   for (const Memory memory : {Memory::kForgetting, Memory::kWindow}) {
     const auto store = store_with({.memory = memory, .memory_blocks = 5.0});

@@ -2,6 +2,7 @@
 #include "dampline/estimate/block_store.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "dampline/numeric/wide.hpp"
@@ -41,25 +42,21 @@ double MemoryConfig::kept() const noexcept {
   return memory == Memory::kForgetting ? std::exp(-1.0 / memory_blocks) : 1.0;
 }
 
-std::uint32_t MemoryConfig::blocks_per_entry(std::size_t most) const noexcept {
+std::uint32_t MemoryConfig::longest_entry(std::size_t most) const noexcept {
+  if (memory == Memory::kInfinite) return BlockEntries<ScaleFactors, kEntries>::kNeverFull;
   // The ring covers the window, or five time constants.
-  const double covered = memory == Memory::kWindow       ? memory_blocks
-                         : memory == Memory::kForgetting ? 5.0 * memory_blocks
-                                                         : 0.0;
-  return static_cast<std::uint32_t>(std::max(1.0, std::ceil(covered / static_cast<double>(most))));
+  const double covered = memory == Memory::kWindow ? memory_blocks : 5.0 * memory_blocks;
+  return std::bit_ceil(
+      static_cast<std::uint32_t>(std::max(1.0, std::ceil(covered / static_cast<double>(most)))));
 }
 
 BlockStore::BlockStore(const Config& config) noexcept
     : config_{config}, entries_{entries_for(config)} {}
 
 BlockStore::Entries BlockStore::entries_for(const Config& config) noexcept {
-  const std::uint32_t blocks = config.blocks_per_entry(kEntries);
-  const std::size_t limit = config.memory == Memory::kWindow
-                                ? static_cast<std::size_t>(std::ceil(config.memory_blocks / blocks))
-                                : kEntries;
-  return Entries{config.memory == Memory::kInfinite ? Entries::WhenFull::kJoinNeighbours
-                                                    : Entries::WhenFull::kDropOldest,
-                 limit, blocks};
+  const std::uint32_t longest = config.longest_entry(kEntries);
+  if (config.memory != Memory::kWindow) return Entries{longest};
+  return Entries{longest, static_cast<std::size_t>(std::ceil(config.memory_blocks / longest))};
 }
 
 void BlockStore::absorb(std::int64_t block, std::size_t scale, const GalerkinRow& row) noexcept {

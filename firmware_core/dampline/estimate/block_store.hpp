@@ -21,8 +21,8 @@ struct MemoryConfig {
   double memory_blocks{0.0};  ///< window length or time constant
   /// Of the total, when a block is added to it: nothing is forgotten at a standstill.
   [[nodiscard]] double kept() const noexcept;
-  /// Entries so long that `most` of them cover what is remembered.
-  [[nodiscard]] std::uint32_t blocks_per_entry(std::size_t most) const noexcept;
+  /// Entries so long that `most` of them cover what is remembered: a power of two of blocks.
+  [[nodiscard]] std::uint32_t longest_entry(std::size_t most) const noexcept;
 };
 
 /// Block factors on their way into the memory. Rows go into an open block; a closed block is merged

@@ -26,10 +26,7 @@ double residual_power(const RowFactor& factor, double rows) noexcept {
 }  // namespace
 
 GroupedStore::GroupedStore(const Config& config) noexcept
-    : config_{config},
-      entries_{config.memory == Memory::kInfinite ? Entries::WhenFull::kJoinNeighbours
-                                                  : Entries::WhenFull::kDropOldest,
-               kMostEntries, config.blocks_per_entry(kMostEntries)} {}
+    : config_{config}, entries_{config.longest_entry(kMostEntries)} {}
 
 bool GroupedStore::weigh() noexcept {
   for (std::size_t s = 0; s < kScales; ++s) {

@@ -46,8 +46,9 @@ class WaitingBlocks {
 };
 
 /// Blocks in their order in time, gathered into a fixed number of entries, one part after the
-/// other, so that no single sample pays for all of one. When all entries are in use, neighbours
-/// join two by two and each stands for twice the time; or the oldest leaves.
+/// other, so that no single sample pays for all of one. An entry stands for one block at first.
+/// When all are in use, neighbours join two by two and each stands for twice the time; once an
+/// entry is as long as it may be, the oldest leaves instead.
 ///
 /// Entry: `blocks`, how many it stands for; kParts; clear(); merge(from, part) adds a part and
 /// returns how many it did at once; copy(from, part); the same of the counts beside the parts.
@@ -56,11 +57,11 @@ class BlockEntries {
   static_assert(kMost % 2 == 0);
 
  public:
-  enum class WhenFull : std::uint8_t { kJoinNeighbours, kDropOldest };
-  /// `limit`: entries in use at most; kMost where neighbours join.
-  explicit BlockEntries(WhenFull when_full = WhenFull::kJoinNeighbours, std::size_t limit = kMost,
-                        std::uint32_t blocks_per_entry = 1) noexcept
-      : when_full_{when_full}, limit_{limit}, blocks_per_entry_{blocks_per_entry} {}
+  static constexpr std::uint32_t kNeverFull = 0x80000000U;
+  /// `longest`: blocks per entry at most, a power of two; `limit`: entries of that length that are
+  /// kept, at least kMost / 2.
+  explicit BlockEntries(std::uint32_t longest = kNeverFull, std::size_t limit = kMost) noexcept
+      : longest_{longest}, limit_{limit} {}
 
   /// How many; [0] is the oldest.
   [[nodiscard]] std::size_t size() const noexcept { return count_; }
@@ -81,8 +82,7 @@ class BlockEntries {
   /// A block is to be taken: step() until it is in.
   void begin() noexcept {
     cursor_ = 0;
-    const bool full = count_ == limit_ && !has_room();
-    joining_ = full && when_full_ == WhenFull::kJoinNeighbours;
+    joining_ = blocks_per_entry_ < longest_ && count_ == kMost && !has_room();
     if (!joining_) open();
   }
   /// True where the next step adds this part of the block, and is not one of joining.
@@ -104,9 +104,12 @@ class BlockEntries {
   [[nodiscard]] bool has_room() const noexcept {
     return count_ > 0 && (*this)[count_ - 1].blocks < blocks_per_entry_;
   }
+  [[nodiscard]] std::size_t limit() const noexcept {
+    return blocks_per_entry_ < longest_ ? kMost : limit_;
+  }
   void open() noexcept {
     if (has_room()) return;
-    if (count_ == limit_) {
+    if (count_ == limit()) {
       head_ = (head_ + 1) % kMost;  // the oldest entry leaves
     } else {
       ++count_;
@@ -132,9 +135,9 @@ class BlockEntries {
     open();
   }
 
-  WhenFull when_full_;
+  std::uint32_t longest_;
   std::size_t limit_;
-  std::uint32_t blocks_per_entry_;
+  std::uint32_t blocks_per_entry_{1};
   std::array<Entry, kMost> entries_{};
   std::size_t head_{0};
   std::size_t count_{0};
