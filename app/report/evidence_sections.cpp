@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -47,13 +48,19 @@ std::vector<std::string> model_row(const char* name, const Json& model) {
           joined(list_at(model, "terms"))};
 }
 
+std::vector<Parameter> parameters_at(const Json& step) {
+  std::vector<Parameter> out;
+  for (const Json& p : list_at(step, "parameters"))
+    out.push_back(
+        {word_at(p, "name"), number_at(p, "value"), number_at(p, "std"), word_at(p, "unit")});
+  return out;
+}
+
 std::string parameters_of(const Json& step) {
   std::string out;
-  for (const Json& p : list_at(step, "parameters")) {
-    const QuantityText q = format_quantity(number_at(p, "value"), number_at(p, "std"));
-    out += fmt::format("{}{} {}{} {}", out.empty() ? "" : "; ", plot_label(word_at(p, "name")),
-                       q.value, q.std.empty() ? "" : " ± " + q.std, word_at(p, "unit"));
-  }
+  for (const Parameter& p : parameters_at(step))
+    out += fmt::format("{}{} {}", out.empty() ? "" : "\n", plot_label(p.name),
+                       quantity_text(p.value, p.std, p.unit));
   return out;
 }
 
@@ -66,22 +73,48 @@ std::vector<std::string> candidate_row(int round, const Json& c, const std::stri
           verdict};
 }
 
+/// The verdict as a sentence.
+std::string verdict_words(const std::string& verdict, const std::string& effects) {
+  if (verdict == "complete")
+    return "The model is complete: no effect that was tried improves it, and what is left is no "
+           "more "
+           "than the sensors make.";
+  if (verdict == "explained")
+    return fmt::format(
+        "The plain model lacked {}; with it, what is left is near what the sensors make.", effects);
+  if (verdict == "partly_explained")
+    return fmt::format(
+        "The plain model lacked something like {}, and something real is still left.", effects);
+  if (verdict == "unexplained") return "Something real is left that no effect explains.";
+  if (verdict == "not_ready") return "The record is too short to say what the model lacks.";
+  return fmt::format("Verdict: {}.", plot_label(verdict));
+}
+
 }  // namespace
+
+Finding finding_of(const Evidence& evidence) {
+  if (evidence.explanation.empty()) return {};
+  const Json json = json_of(evidence);
+  Finding out{word_at(json, "verdict"), {}, ""};
+  for (const Json& step : list_at(json, "steps"))
+    out.effects.push_back({word_at(step, "effect"), parameters_at(step)});
+  if (json.contains("signature")) out.signature = word_at(json.at("signature"), "text");
+  return out;
+}
 
 std::string explanation_headline(const Evidence& evidence) {
   const Json json = json_of(evidence);
+  const Finding finding = finding_of(evidence);
   std::string effects;
-  for (const Json& step : list_at(json, "steps"))
-    effects += (effects.empty() ? "" : ", ") + plot_label(word_at(step, "effect"));
-  std::string out = fmt::format("Verdict: {}.", plot_label(word_at(json, "verdict")));
-  if (!effects.empty()) out += fmt::format(" The model lacked: {}.", effects);
+  for (const LackingEffect& e : finding.effects)
+    effects += (effects.empty() ? "" : ", ") + plot_label(e.name);
+  std::string out = verdict_words(finding.verdict, effects.empty() ? "nothing" : effects);
   if (!json.contains("base") || !json.contains("final")) return out;
-  const double before = number_at(json.at("base"), "held_out_rrse");
-  const double after = number_at(json.at("final"), "held_out_rrse");
-  return out + (effects.empty()
-                    ? fmt::format(" Error on held-out data: rrse {:.3f}.", before)
-                    : fmt::format(" Error on held-out data: rrse {:.3f} before, {:.3f} after.",
-                                  before, after));
+  const auto share = [&](const char* model) {  // in one piece: no line ends before the sign
+    return fmt::format("{:.1f}\u00a0%", 100.0 * number_at(json.at(model), "held_out_rrse"));
+  };
+  out += " Error on held-out data: " + share("base") + " of the force";
+  return out + (effects.empty() ? "." : " before, " + share("final") + " after.");
 }
 
 std::string verdict_section(const Evidence& evidence) {
@@ -96,7 +129,9 @@ std::string verdict_section(const Evidence& evidence) {
   for (const Json& step : list_at(json, "steps"))
     rows.push_back(
         {plot_label(word_at(step, "effect")), parameters_of(step), word_at(step, "note")});
-  if (!rows.empty()) out += html_table({"effect", "parameters", ""}, rows, 0);
+  const bool remarked =
+      std::any_of(rows.begin(), rows.end(), [](const auto& row) { return !row[2].empty(); });
+  if (!rows.empty()) out += html_table({"effect", "parameters", remarked ? "remark" : ""}, rows, 0);
   const double floor = number_at(json, "floor_nmse");
   if (floor > 0.0 && json.contains("final"))
     out += fmt::format(

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <map>
 
+#include "app/report/advice.hpp"
+#include "app/report/answer.hpp"
+#include "app/report/assets.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
 #include "app/report/sections.hpp"
@@ -27,6 +30,10 @@ constexpr std::string_view kBandHolds = " The band holds the truth in about 19 o
 constexpr std::string_view kBandDoesNot =
     " The band is that of this model; it does not hold the truth, since the model or the data are "
     "not to be trusted.";
+constexpr std::string_view kZoomText =
+    "<p class=\"note only-live\">Drag over a plot to enlarge a part of it, on a phone with two "
+    "fingers; a double click or tap shows all of it again. A plot in focus takes the arrow keys, + "
+    "and -.</p>\n";
 constexpr std::string_view kFaultText =
     "Faults of sensors and of the transport. A line leads from where a fault was first seen to "
     "where "
@@ -43,6 +50,8 @@ constexpr std::string_view kConvergenceText =
 constexpr std::string_view kMotionText =
     "An excerpt of the motion between frame and wheelsets, y = 2 z_b - (z_1 + z_2), drift removed. "
     "Slow deflection (below about 1 Hz) cannot be known from accelerations and is not shown.";
+constexpr std::string_view kExcludedText =
+    "Stretches of the record that took no part in the estimate, a row for each reason.";
 constexpr std::string_view kEventText =
     "What happened beside the samples: markers and pulses of the digital lines, and what befell "
     "the "
@@ -104,14 +113,22 @@ std::string evidence_sections(const Evidence& evidence) {
   return out + section("Records that were never fitted", drawn);
 }
 
-/// What stands above everything else: the result, whether it is to be trusted, and what the model
-/// lacked.
-std::string opening(const RunResult& result) {
-  std::string own = fmt::format("<p class=\"lead\">{}</p>\n{}{}", escape_html(result.headline),
-                                trust_section(result), warning_section(result));
-  if (result.evidence.explanation.empty()) return own;
-  return fmt::format("{}<p>{}</p>\n{}", own, escape_html(explanation_headline(result.evidence)),
-                     evidence_sections(result.evidence));
+/// What stands above everything else: of what this is, the answer, and whether it is to be trusted.
+std::string opening(const RunResult& result, const Provenance& provenance,
+                    const std::string& run_toml) {
+  std::string out = identity_section(result, provenance, run_toml) +
+                    answer_section(result, run_toml) + warning_section(result);
+  if (!result.evidence.explanation.empty())
+    out += fmt::format("<p>{}</p>\n", escape_html(explanation_headline(result.evidence)));
+  return out;
+}
+
+std::string curve_section(const RunResult& result) {
+  const std::string_view text = result.kind == "truck" ? kCurveText : kRigCurveText;
+  const bool holds = result.trust == Trust::kTrusted;
+  const std::string drawn = figure(plot_curve(result), "curve",
+                                   std::string{text}.append(holds ? kBandHolds : kBandDoesNot));
+  return drawn.empty() ? "" : drawn + std::string{kZoomText};
 }
 
 }  // namespace
@@ -119,12 +136,11 @@ std::string opening(const RunResult& result) {
 std::string make_page(const RunResult& result, const Provenance& provenance,
                       const std::string& run_toml) {
   const bool truck = result.kind == "truck";
-  const std::string name = provenance.inputs.empty() ? "" : provenance.inputs.front().name;
-  std::string body = opening(result);
-  body += section("Damping curve",
-                  figure(plot_curve(result), "curve",
-                         std::string{truck ? kCurveText : kRigCurveText}.append(
-                             result.trust == Trust::kTrusted ? kBandHolds : kBandDoesNot)));
+  std::string body = opening(result, provenance, run_toml);
+  body += section("Damping curve", curve_section(result));
+  body += section(truck ? "What to check on the truck" : "What to check on the rig",
+                  advice_section(result));
+  body += evidence_sections(result.evidence);
   body += section("Parameters", parameter_section(result)) +
           section("The model before", base_section(result));
   body += section("Terms", term_section(result));
@@ -147,15 +163,15 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
   body += section("Events", figure(plot_events(result), "events", kEventText));
   body += section("How the acquisition kept up",
                   figure(plot_lateness(result), "lateness", kLatenessText) + live_section(result));
-  body += section("What was left out, and why",
-                  figure(plot_excluded(result), "excluded", "") + excluded_section(result));
+  body +=
+      section("What was left out, and why",
+              figure(plot_excluded(result), "excluded", kExcludedText) + excluded_section(result));
   body += section("Where this comes from", provenance_section(provenance, run_toml));
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>dampline: {0}</title>\n<style>{1}</style></head><body>\n"
-      "<h1>dampline: {0}</h1>\n{2}</body></html>\n",
-      escape_html(name), kPageStyle, body);
+      "<title>dampline: {}</title>\n{}</head><body>\n<main>\n{}</main>\n{}</body></html>\n",
+      escape_html(record_name(provenance)), page_head(), body, page_scripts());
 }
 
 void stage_report(const RunFiles& files, RunDirectory& directory) {

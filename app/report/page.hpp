@@ -8,7 +8,8 @@
 
 namespace dampline::app {
 
-/// The whole run as one self-contained page: no script, no link, drawings inline.
+/// The whole run as one self-contained page that begins with the answer: drawings inline, style and
+/// scripts too, and nothing is fetched. Some 75 KB beside the drawings and their numbers.
 [[nodiscard]] std::string make_page(const RunResult& result, const Provenance& provenance,
                                     const std::string& run_toml);
 

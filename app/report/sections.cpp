@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "app/report/html.hpp"
@@ -70,31 +72,18 @@ std::string warning_section(const RunResult& result) {
   return out;
 }
 
-std::string trust_section(const RunResult& result) {
-  std::string out = fmt::format("<p class=\"{}\">Trust: {}.</p>\n",
-                                result.trust == Trust::kTrusted ? "note" : "warning",
-                                plot_label(name_of(result.trust)));
-  if (result.trust_reasons.empty()) return out;
-  out += "<ul>\n";
-  for (const std::string& reason : result.trust_reasons)
-    out += fmt::format("<li>{}</li>\n", escape_html(reason));
-  return out + "</ul>\n";
-}
-
 namespace {
 
 std::string law_table(const std::vector<Parameter>& parameters,
                       const std::vector<std::string>& model) {
   std::vector<std::vector<std::string>> rows;
   for (const Parameter& p : parameters) {
-    const QuantityText text = format_quantity(p.value, p.std);
-    const std::string relative =
-        text.std.empty() || p.value == 0.0 ? "" : percent(p.std / std::fabs(p.value));
-    rows.push_back({p.name, text.value, text.std.empty() ? "" : "± " + text.std, p.unit, relative,
+    const bool has_std = p.std > 0.0 && std::isfinite(p.std) && p.value != 0.0;
+    rows.push_back({p.name, quantity_text(p.value, p.std, p.unit),
+                    has_std ? percent(p.std / std::fabs(p.value)) : "",
                     meaning_of_parameter(p.name)});
   }
-  return html_table({"parameter", "value", "standard deviation", "unit", "relative", "meaning"},
-                    rows, 4) +
+  return html_table({"parameter", "value ± standard deviation", "relative", "meaning"}, rows, 2) +
          fmt::format("<p class=\"note\">Model: {}.</p>\n", escape_html(joined(model)));
 }
 
@@ -109,7 +98,7 @@ std::string base_section(const RunResult& result) {
 }
 
 std::string quality_section(const RunResult& result) {
-  std::string out = html_table({"", "", "meaning"}, quality_rows(result), 1);
+  std::string out = html_table({"", "value", "meaning"}, quality_rows(result), 1);
   if (!result.asymmetry.empty()) out += paragraph("Asymmetry: " + result.asymmetry);
   if (result.notes.empty()) return out;
   out += "<ul>\n";
@@ -120,8 +109,9 @@ std::string quality_section(const RunResult& result) {
 
 std::string excluded_section(const RunResult& result) {
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> zeros;
   for (const auto& [name, count] : result.counts)
-    rows.push_back({meaning_of_count(name), format_count(count)});
+    (count > 0 ? rows : zeros).push_back({meaning_of_count(name), format_count(count)});
   std::string out = result.excluded.empty() ? "<p>Nothing was left out.</p>\n" : "";
   if (!result.excluded.empty()) {
     std::vector<std::vector<std::string>> spans;
@@ -134,7 +124,10 @@ std::string excluded_section(const RunResult& result) {
     if (more > 0)
       out += fmt::format("<p class=\"note\">and {} more, listed in excluded.csv.</p>\n", more);
   }
-  return out + html_table({"counted", ""}, rows, 1);
+  if (!rows.empty()) out += html_table({"counted", "number"}, rows, 1);
+  if (zeros.empty()) return out;
+  return out + html_details(fmt::format("{} counters that are 0", zeros.size()),
+                            html_table({"counted", "number"}, zeros, 1));
 }
 
 std::string provenance_section(const Provenance& provenance, const std::string& run_toml) {
@@ -144,10 +137,9 @@ std::string provenance_section(const Provenance& provenance, const std::string& 
                     input.sha256.empty() ? "" : format_count(input.bytes) + " bytes",
                     input.sha256.empty() ? "no file: no checksum" : "sha256 " + input.sha256});
   return html_table({"input", "name", "size", "checksum"}, rows, 0) +
-         fmt::format(
-             "<p class=\"note\">dampline {}</p>\n<details><summary>Complete configuration "
-             "(run.toml)</summary>\n<pre>{}</pre></details>\n",
-             escape_html(provenance.version), escape_html(run_toml));
+         fmt::format("<p class=\"note\">dampline {}</p>\n", escape_html(provenance.version)) +
+         html_details("Complete configuration (run.toml)",
+                      fmt::format("<pre>{}</pre>", escape_html(run_toml)));
 }
 
 namespace {
@@ -156,13 +148,13 @@ std::string with_unit(double value, const std::string& unit) {
   return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
+/// The verdict, and below it what the record contradicts, a line each.
 std::string objections_of(const MethodSummary& method) {
-  std::string out;
+  std::string out = method.trusted ? "yes" : "no";
   for (const Objection& o : method.objections)
-    out += fmt::format("<li>{}: {}, limit {}</li>", escape_html(o.reason),
-                       escape_html(with_unit(o.size, o.unit)),
-                       escape_html(with_unit(o.limit, o.unit)));
-  return out.empty() ? "" : "<ul>" + out + "</ul>";
+    out += fmt::format("\n{}: {}, limit {}", o.reason, with_unit(o.size, o.unit),
+                       with_unit(o.limit, o.unit));
+  return out;
 }
 
 std::string level_of(const MethodSummary& method) {
@@ -187,16 +179,15 @@ std::string difference(const MethodSummary& method, const Parameter* coulomb) {
 std::string method_section(const RunResult& result) {
   if (result.methods.empty()) return "";
   const Parameter* coulomb = coulomb_of(result);
-  std::string out =
-      "<table><tr><th>method</th><th class=\"number\">Coulomb level</th><th class=\"number\">"
-      "against the wavelet windows</th><th>to be trusted here</th></tr>\n";
-  for (const MethodSummary& m : result.methods)
-    out += fmt::format(
-        "<tr{}><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}{}</td>"
-        "</tr>\n",
-        m.trusted ? "" : " class=\"grey\"", escape_html(m.title), level_of(m),
-        difference(m, coulomb), m.trusted ? "yes" : "no", objections_of(m));
-  return out + "</table>\n";
+  std::vector<std::vector<std::string>> rows;
+  std::vector<bool> grey;
+  for (const MethodSummary& m : result.methods) {
+    rows.push_back({m.title, level_of(m), difference(m, coulomb), objections_of(m)});
+    grey.push_back(!m.trusted);
+  }
+  return html_table(
+      {"method", "Coulomb level", "against the wavelet windows", "to be trusted here"}, rows, 2,
+      grey);
 }
 
 namespace {
@@ -208,6 +199,7 @@ std::string mebibytes(std::uint64_t bytes) {
 }  // namespace
 
 std::string live_section(const RunResult& result) {
+  const auto is_zero = [](const auto& row) { return row[1] == "0" || row[1] == "0 + 0"; };
   if (!result.live) return "";
   const LiveFigures& f = *result.live;
   const std::string lateness =
@@ -229,7 +221,13 @@ std::string live_section(const RunResult& result) {
   if (f.first_sample_s)
     rows.push_back({"first sample", fmt::format("{:.3f} s", *f.first_sample_s),
                     "after the start of the program"});
-  return html_table({"", "", "meaning"}, rows, 1);
+  std::vector<std::vector<std::string>> zeros;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(zeros), is_zero);
+  std::erase_if(rows, is_zero);
+  std::string out = html_table({"", "value", "meaning"}, rows, 1);
+  if (zeros.empty()) return out;
+  return out + html_details(fmt::format("{} counters that are 0", zeros.size()),
+                            html_table({"", "value", "meaning"}, zeros, 1));
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <string>
+#include <vector>
 
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
@@ -9,8 +10,6 @@ namespace dampline::app {
 
 /// The parts of the page that are text and tables, as HTML.
 [[nodiscard]] std::string warning_section(const RunResult& result);
-/// Whether a script may act on the result, with the reasons.
-[[nodiscard]] std::string trust_section(const RunResult& result);
 [[nodiscard]] std::string parameter_section(const RunResult& result);
 /// The law that identify states, where an explanation added to it; else empty.
 [[nodiscard]] std::string base_section(const RunResult& result);
@@ -40,7 +39,20 @@ namespace dampline::app {
 
 // Of an explanation.
 
-/// The verdict and the error before and after in one sentence.
+/// An effect that the model lacked, with its size.
+struct LackingEffect {
+  std::string name;
+  std::vector<Parameter> parameters;
+};
+/// What explanation.json says that a reader must know first.
+struct Finding {
+  std::string verdict;  ///< empty: there is no explanation
+  std::vector<LackingEffect> effects;
+  std::string signature;  ///< a sentence on what is left; may be empty
+};
+[[nodiscard]] Finding finding_of(const Evidence& evidence);
+
+/// The verdict and the error before and after in plain sentences.
 [[nodiscard]] std::string explanation_headline(const Evidence& evidence);
 /// Verdict, errors and what is left.
 [[nodiscard]] std::string verdict_section(const Evidence& evidence);

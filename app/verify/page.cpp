@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "app/report/assets.hpp"
 #include "app/report/html.hpp"
 
 namespace dampline::app {
@@ -91,9 +92,8 @@ namespace {
 
 /// Tables of many columns, whose short words stay whole; two panels beside each other.
 constexpr std::string_view kWide = R"css(body { max-width: 76rem; }
-th, td { overflow-wrap: break-word; }
 .panels.beside { grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); }
-@media (max-width: 40rem) { td { min-width: 5rem; } td:first-child { min-width: 9rem; } td:last-child { min-width: 15rem; } }
+@media (max-width: 40rem) { table { display: block; overflow-x: auto; } td { min-width: 5rem; } td:first-child { min-width: 9rem; } td:last-child { min-width: 15rem; } }
 )css";
 
 }  // namespace
@@ -103,9 +103,9 @@ std::string whole_page(const std::string& heading, const std::string& body) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\">\n<title>{0}</title>\n"
-      "<style>{1}{3}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}</body>\n"
+      "{1}<style>{3}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n{4}</body>\n"
       "</html>\n",
-      escape_html(heading), kPageStyle, body, kWide);
+      escape_html(heading), page_head(), body, kWide, page_scripts());
 }
 
 }  // namespace dampline::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "app/report/html.hpp"
@@ -14,7 +15,7 @@
 namespace dampline::app::svg {
 namespace {
 
-constexpr double kWidth = 480.0;  // read at 14 units a line on a narrow page
+constexpr double kWidth = 420.0;  // letters of 14 units are 12 pixels on a phone
 constexpr double kLetter = 7.7;   // the mean letter
 constexpr double kRow = 19.0;     // of the legend
 constexpr double kSwatch = 24.0;
@@ -286,8 +287,10 @@ std::string Panel::alternative(const Frame& f, std::string_view what) const {
 
 std::string Panel::draw(const std::string& id, std::string_view what) const {
   const Frame f = frame();
-  const std::string label = escape_html(
-      lanes_.empty() ? fmt::format("{} over {}", y_.label, x_.label) : std::string{what});
+  const std::string label =
+      escape_html(lanes_.empty() ? fmt::format("{} over {}", y_.label, x_.label)
+                  : what.empty() ? "Rows over " + x_.label
+                                 : std::string{what});
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" id=\"{0}\" viewBox=\"0 0 "
              "{1} {2:.0f}\" role=\"img\" aria-label=\"{3}\" aria-describedby=\"{0}-desc\">"
@@ -298,6 +301,117 @@ std::string Panel::draw(const std::string& id, std::string_view what) const {
              f.top - 2.0, f.right - f.left + 2.0, height_ + 4.0) +
          axes(f) + fmt::format("<g clip-path=\"url(#{}-clip)\">", escape_html(id)) + marks(f) +
          "</g>" + flags(f) + lanes(f) + legend(f) + "</svg>";
+}
+
+namespace {
+
+/// In quotes, safe in a script of a page.
+std::string json_string(std::string_view text) {
+  std::string out =
+      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = out.find('<'); at != std::string::npos; at = out.find('<', at))
+    out.replace(at, 1, "\\u003c");
+  return out;
+}
+
+/// Numbers of an axis with as many digits as an enlarged plot can show.
+class Digits {
+ public:
+  Digits(bool log, const Scale& scale) {
+    constexpr double kShares = 2e5;  // of the range
+    if (!log)
+      decimals_ = static_cast<int>(std::ceil(std::log10(kShares / (scale.high() - scale.low()))));
+  }
+  void append(std::string& out, double value) const {
+    if (out.back() != '[') out += ',';
+    if (!std::isfinite(value)) {
+      out += "null";
+    } else if (decimals_ < 0 || decimals_ > kMostDecimals) {
+      fmt::format_to(std::back_inserter(out), "{:.6g}", value);
+    } else {
+      fmt::format_to(std::back_inserter(out), "{:.{}f}", value, decimals_);
+      if (decimals_ == 0) return;
+      out.erase(out.find_last_not_of('0') + 1);
+      if (out.back() == '.') out.pop_back();
+    }
+  }
+  [[nodiscard]] std::string column(const std::vector<Point>& points, double Point::*of) const {
+    std::string out = "[";
+    for (const Point& p : points) append(out, p.*of);
+    return out + ']';
+  }
+
+ private:
+  static constexpr int kMostDecimals = 9;
+  int decimals_{-1};
+};
+
+std::string axis_of(const Axis& axis, const Scale& scale) {
+  return fmt::format(R"({{"label":{},"low":{:.8g},"high":{:.8g},"log":{}}})",
+                     json_string(axis.label), scale.low(), scale.high(), axis.log);
+}
+
+}  // namespace
+
+std::string Panel::points_of(const Mark& mark, const Frame& f,
+                             std::vector<std::string>& places) const {
+  const Digits x{x_.log, f.x};
+  const Digits y{y_.log, f.y};
+  if (mark.shape == Shape::kBoxes) {
+    std::string corners = "[";
+    for (const Point& p : mark.points) {
+      x.append(corners, p.x);
+      y.append(corners, p.y);
+    }
+    places.emplace_back();
+    return fmt::format(R"("corners":{}])", corners);
+  }
+  // Around an area: the upper line, and the lower one back.
+  const bool area = mark.shape == Shape::kArea;
+  const std::size_t count = area ? mark.points.size() / 2 : mark.points.size();
+  const auto end = mark.points.begin() + static_cast<std::ptrdiff_t>(count);
+  const std::vector<Point> upper(mark.points.begin(), end);
+  std::string place = x.column(upper, &Point::x);
+  const auto same = std::find(places.begin(), places.end(), place);
+  const std::string shown = same == places.end() ? place : fmt::format("{}", same - places.begin());
+  places.push_back(std::move(place));
+  const std::string values = y.column(upper, &Point::y);
+  if (!area) return fmt::format(R"("x":{},"y":{})", shown, values);
+  const std::vector<Point> lower(mark.points.rbegin(), std::make_reverse_iterator(end));
+  return fmt::format(R"("x":{},"high":{},"low":{})", shown, values, y.column(lower, &Point::y));
+}
+
+std::string Panel::data() const {
+  constexpr std::array<const char*, 4> kShapes{"line", "band", "boxes", "dots"};
+  const Frame f = frame();
+  const Digits x{x_.log, f.x};
+  std::vector<std::string> places;
+  std::string marks;
+  for (const Mark& mark : marks_)
+    marks += fmt::format(
+        R"({}{{"shape":"{}","ink":"{}","width":{},"dashed":{},"opacity":{},"name":{},{}}})",
+        marks.empty() ? "" : ",", kShapes.at(static_cast<std::size_t>(mark.shape)),
+        name_of(mark.stroke.ink), mark.stroke.width, mark.stroke.dashed, mark.opacity,
+        json_string(mark.name), points_of(mark, f, places));
+  std::string lanes;
+  for (const Lane& lane : lanes_)
+    lanes += fmt::format("{}[{},{}]", lanes.empty() ? "" : ",", json_string(lane.name),
+                         json_string(lane.note));
+  std::string flags;
+  for (const Flag& flag : flags_) {
+    flags += flags.empty() ? "[" : ",[";
+    x.append(flags, flag.x);
+    fmt::format_to(std::back_inserter(flags), ",{:.3g},{}]", flag.share, json_string(flag.name));
+  }
+  std::string zone = zone_ ? "[" : "null";
+  if (zone_) {
+    x.append(zone, zone_->points[0].x);
+    x.append(zone, zone_->points[1].x);
+    fmt::format_to(std::back_inserter(zone), ",{}]", json_string(zone_->name));
+  }
+  return fmt::format(
+      R"({{"title":{},"height":{},"x":{},"y":{},"zone":{},"lanes":[{}],"flags":[{}],"marks":[{}]}})",
+      json_string(title_), height_, axis_of(x_, f.x), axis_of(y_, f.y), zone, lanes, flags, marks);
 }
 
 }  // namespace dampline::app::svg

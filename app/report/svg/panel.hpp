@@ -53,7 +53,7 @@ struct Axis {
 /// not drawn.
 class Panel {
  public:
-  static constexpr double kHeight = 230.0;  ///< between the axes; the panel is 480 wide
+  static constexpr double kHeight = 230.0;  ///< between the axes; the panel is 420 wide
 
   Panel(Axis x, Axis y, double height = kHeight);
   /// Row i is y = i, from the top.
@@ -74,6 +74,9 @@ class Panel {
 
   /// An <svg> element; `id` and `what` tell it from the others of the page.
   [[nodiscard]] std::string draw(const std::string& id, std::string_view what) const;
+  /// The numbers behind the drawing as a JSON object, for plots.js: axes with their ranges, marks
+  /// with their points. Holds no '<', whatever the names say.
+  [[nodiscard]] std::string data() const;
 
  private:
   enum class Shape : std::uint8_t { kLine, kArea, kBoxes, kDots };
@@ -97,6 +100,9 @@ class Panel {
   [[nodiscard]] std::string lanes(const Frame& frame) const;
   [[nodiscard]] std::string marks(const Frame& frame) const;
   [[nodiscard]] static std::string path_of(const Mark& mark, const Frame& frame);
+  /// Of a mark's numbers; `places` are the x of the marks before it, to which a number refers.
+  [[nodiscard]] std::string points_of(const Mark& mark, const Frame& frame,
+                                      std::vector<std::string>& places) const;
   [[nodiscard]] static std::string boxes_path(const Mark& mark, const Frame& frame);
   [[nodiscard]] std::string flags(const Frame& frame) const;
   [[nodiscard]] std::string alternative(const Frame& frame, std::string_view what) const;
