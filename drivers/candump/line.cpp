@@ -8,17 +8,14 @@
 #include <cstdint>
 #include <cstring>
 
+#include "drivers/record/identifier.hpp"
 #include "hal/clock.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 constexpr std::uint8_t kNoDigit = 0xFF;
-constexpr std::uint32_t kErrorFlag = 0x20000000U;
-constexpr std::uint32_t kStandardMask = 0x7FFU;
-constexpr std::uint32_t kExtendedMask = 0x1FFFFFFFU;
 constexpr std::int64_t kLatestSecond = 9'223'372'035;  // the last whose nanoseconds fit in 63 bits
-constexpr std::size_t kLongestName = 15;               // of an interface
 
 constexpr std::array<std::uint8_t, 256> hex_table() {
   std::array<std::uint8_t, 256> table{};

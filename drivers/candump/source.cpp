@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
+#include "drivers/text/kind.hpp"
 #include "drivers/text/quote.hpp"
 #include "hal/clock.hpp"
 
@@ -21,13 +21,13 @@ constexpr const char* kExample =
 
 }  // namespace
 
-Outcome<std::unique_ptr<CandumpSource>> CandumpSource::open(const CandumpConfig& config) {
+Outcome<std::unique_ptr<CandumpSource>> CandumpSource::open(const FrameFileConfig& config) {
   Outcome<LineReader> reader = LineReader::open(config.path);
   if (!reader.ok()) return reader.failure();
   return std::unique_ptr<CandumpSource>{new CandumpSource{config, std::move(reader.value())}};
 }
 
-CandumpSource::CandumpSource(const CandumpConfig& config, LineReader reader)
+CandumpSource::CandumpSource(const FrameFileConfig& config, LineReader reader)
     : reader_{std::move(reader)},
       wanted_{config.interfaces},
       skip_bad_lines_{config.skip_bad_lines} {
@@ -69,8 +69,7 @@ CandumpSource::Step CandumpSource::read_one(CanFrame& frame) noexcept {
     case LineReader::Status::kError:
       break;
   }
-  return stop(Errc::kIo, fmt::format("{}: cannot be read: {}", reader_.name(),
-                                     std::strerror(reader_.error_number())));
+  return stop(reader_.error(), reader_.error_text());
 }
 
 CandumpSource::Step CandumpSource::take_line(std::string_view line, CanFrame& frame) noexcept {
@@ -161,6 +160,7 @@ CandumpSource::Step CandumpSource::bad_line(std::string_view line,
 }
 
 CandumpSource::Step CandumpSource::end_of_file() noexcept {
+  health_.truncated = health_.truncated || reader_.is_cut_off();
   if (recognised_) return stop(Errc::kEndOfStream, {});
   if (reader_.line_number() == 0) {
     return stop(Errc::kMalformed,
@@ -173,7 +173,11 @@ std::string CandumpSource::wrong_kind() const {
   const std::string_view first = first_line_;
   const bool binary = first.find('\0') != std::string_view::npos;
   const bool table = !binary && first.find_first_of(",;\t") != std::string_view::npos;
-  const char* kind = binary ? "binary data" : table ? "what looks like a table (CSV)" : "no frame";
+  const auto foreign = foreign_kind(first);
+  const std::string_view kind = foreign  ? foreign->name
+                                : binary ? "binary data"
+                                : table  ? "what looks like a table (CSV)"
+                                         : "no frame";
   return fmt::format("{}: found {} beginning {}, expected {}", reader_.name(), kind, quote(first),
                      kExample);
 }

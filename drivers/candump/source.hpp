@@ -3,22 +3,17 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "drivers/candump/interface_table.hpp"
 #include "drivers/candump/line.hpp"
+#include "drivers/record/frames.hpp"
 #include "drivers/text/line_reader.hpp"
 #include "hal/frame_source.hpp"
 
 namespace dampline::drivers {
-
-struct CandumpConfig {
-  std::string path{};                     ///< "-": standard input
-  bool skip_bad_lines{false};             ///< count them in health().malformed and go on
-  std::vector<std::string> interfaces{};  ///< only these; empty: all
-};
 
 /// A candump log as a source of frames (line.hpp has the format). Reads on without waiting and
 /// without allocating, in constant memory whatever the length of the log.
@@ -28,17 +23,17 @@ struct CandumpConfig {
 /// one before by less than a second is held and counted as reordered; by more, the line is bad, and
 /// so is a line more than a second ahead of both its neighbours. A last line without its end is
 /// dropped and sets truncated. Frames of interfaces that were not asked for count as ignored.
-class CandumpSource final : public hal::FrameSource {
+class CandumpSource final : public RecordedFrames {
  public:
-  static Outcome<std::unique_ptr<CandumpSource>> open(const CandumpConfig& config);
+  static Outcome<std::unique_ptr<CandumpSource>> open(const FrameFileConfig& config);
 
-  /// Why read() returned kMalformed or kIo: file, line, what was found, what was expected.
-  [[nodiscard]] const std::string& error_text() const noexcept { return error_; }
-  [[nodiscard]] const InterfaceTable& interfaces() const noexcept { return interfaces_; }
+  [[nodiscard]] std::optional<double> share_read() const noexcept override {
+    return reader_.share_read();
+  }
   [[nodiscard]] std::uint64_t line_number() const noexcept { return reader_.line_number(); }
 
  private:
-  CandumpSource(const CandumpConfig& config, LineReader reader);
+  CandumpSource(const FrameFileConfig& config, LineReader reader);
   [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override;
   [[nodiscard]] Result<bool> do_wait(std::chrono::nanoseconds timeout) noexcept override;
   [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return health_; }
@@ -58,7 +53,6 @@ class CandumpSource final : public hal::FrameSource {
 
   LineReader reader_;
   CandumpLine parser_;
-  InterfaceTable interfaces_;
   std::vector<std::string> wanted_;
   bool skip_bad_lines_;
   bool recognised_{false};  // a line of candump's was seen
@@ -68,7 +62,6 @@ class CandumpSource final : public hal::FrameSource {
   Errc reason_{Errc::kEndOfStream};
   hal::SourceHealth health_{};
   std::string first_line_;  // to say what a file is that is no candump log
-  std::string error_;
 };
 
 }  // namespace dampline::drivers

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -29,7 +28,7 @@ std::string_view why_no_header(std::string_view line, const std::vector<std::str
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; };
   if (std::any_of(line.begin(), line.end(), is_control)) return "binary data";
   if (line.front() == '(' && line.find('#') != std::string_view::npos) return "a candump log";
-  if (std::all_of(cells.begin(), cells.end(), is_number)) return "numbers without a header";
+  if (cells.size() == 1 && is_number(cells[0])) return "a number without a header";
   return {};
 }
 
@@ -39,17 +38,95 @@ std::size_t comment_mark(std::string_view line) noexcept {
   return line.starts_with("//") ? 2 : 0;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
+/// A row: numbers, dates and empty cells, and a number or a date in front. Returns its cells, else
+/// 0.
+std::size_t cells_of_row(std::string_view line, char separator) {
+  std::size_t cells = 0;
+  double number = 0.0;
+  for (bool more = true; more; ++cells) {
+    const std::string_view cell = take_cell(line, separator, more);
+    const bool fits = read_number(cell, separator, number) || read_stamp(cell).has_value();
+    if (!fits || (cells == 0 && cell.empty())) return 0;
+  }
+  return cells;
+}
+
+/// Cells of a line of names: none of them is a number, the first is not empty; else 0.
+std::size_t cells_of_names(std::string_view line, char separator) {
+  std::size_t cells = 0;
+  for (bool more = true; more; ++cells) {
+    const std::string_view cell = take_cell(line, separator, more);
+    if (is_number(cell) || (cells == 0 && cell.empty())) return 0;
+  }
+  return cells;
+}
+
+/// Units below names: short, or in brackets.
+bool may_be_units(std::string_view line, char separator) {
+  constexpr std::size_t kLongestUnit = 6;
+  for (bool more = true; more;) {
+    const std::string_view cell = take_cell(line, separator, more);
+    const bool bracketed = cell.starts_with('[') || cell.starts_with('(');
+    if (cell.size() > kLongestUnit && !bracketed) return false;
+  }
+  return true;
+}
+
+struct Layout {
+  std::size_t before{0};  ///< lines before the header
+  char separator{','};
+};
+
+/// Where two rows follow each other for the first time, and the line before has as many names.
+std::optional<Layout> find_header(const std::vector<std::string_view>& lines) {
+  for (const char separator : {'\t', ';', ',', ' '})
+    for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
+      const std::size_t cells = cells_of_row(lines[i], separator);
+      if (cells < 2 || cells_of_row(lines[i + 1], separator) != cells) continue;
+      if (cells_of_names(lines[i - 1], separator) != cells) break;
+      const bool units = i >= 2 && may_be_units(lines[i - 1], separator) &&
+                         cells_of_names(lines[i - 2], separator) == cells;
+      return Layout{i - (units ? 2 : 1), separator};
+    }
+  return std::nullopt;
 }
 
 }  // namespace
 
 bool CsvReader::is_comment(std::string_view line) noexcept { return comment_mark(line) > 0; }
 
+// What programs of measuring devices write before the header: words without a comment's mark.
+void CsvReader::pass_preamble() noexcept {
+  std::vector<std::string_view> lines;
+  std::string_view head = reader_.peek();
+  while (head.find('\n') != std::string_view::npos) {
+    std::string_view line = head.substr(0, head.find('\n'));
+    head.remove_prefix(line.size() + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    lines.push_back(line);
+  }
+  const auto first = std::find_if(lines.begin(), lines.end(), [](std::string_view line) {
+    return !line.empty() && !is_comment(line);
+  });
+  const std::optional<Layout> layout = find_header(lines);
+  if (!layout || layout->before <= static_cast<std::size_t>(first - lines.begin())) return;
+  has_preamble_ = true;
+  separator_ = layout->separator;
+  std::string_view line;
+  for (std::size_t i = 0; i < layout->before; ++i) static_cast<void>(reader_.next(line));
+  health_.ignored += layout->before;
+}
+
+/// Waits for it.
+LineReader::Status CsvReader::next_line(std::string_view& line) noexcept {
+  LineReader::Status status{};
+  while ((status = reader_.next(line)) == LineReader::Status::kNothingYet)
+    static_cast<void>(reader_.wait(std::chrono::seconds{1}));
+  return status;
+}
+
 Outcome<bool> CsvReader::read_header() {
+  pass_preamble();
   std::string_view line;
   LineReader::Status status{};
   const auto malformed = [&](std::string_view found) {
@@ -59,27 +136,26 @@ Outcome<bool> CsvReader::read_header() {
   std::string comment;
   do {
     if (!line.empty()) comment = line.substr(comment_mark(line));
-    while ((status = reader_.next(line)) == LineReader::Status::kNothingYet) {
-      static_cast<void>(reader_.wait(std::chrono::seconds{1}));
-    }
+    status = next_line(line);
     if (reader_.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
   } while (status == LineReader::Status::kLine && (line.empty() || is_comment(line)));
   if (status == LineReader::Status::kError) {
-    return Failure{Errc::kIo, fmt::format("{}: cannot be read: {}", reader_.name(),
-                                          std::strerror(reader_.error_number()))};
+    return Failure{reader_.error(), reader_.error_text()};
   }
   if (status == LineReader::Status::kEnd || line.empty()) return malformed("nothing: it is empty");
-  separator_ = separator_of(line);
+  if (!has_preamble_) separator_ = separator_of(line);
   header_ = cells_of(line, separator_);
   if (header_.size() > 1 && std::all_of(header_.begin(), header_.end(), is_number)) {
     // The names in the last comment, as NumPy writes them.
     std::vector<std::string> names = cells_of(comment, separator_);
     if (names.size() == header_.size() && std::none_of(names.begin(), names.end(), is_number)) {
       header_ = std::move(names);
-      first_row_ = line;
-      return true;
+    } else {
+      for (std::size_t i = 0; i < header_.size(); ++i) header_[i] = std::to_string(i + 1);
     }
+    first_row_ = line;
+    return true;
   }
   if (const std::string_view kind = why_no_header(line, header_); !kind.empty()) {
     return malformed(fmt::format("{} beginning {}", kind, quote(line)));
@@ -87,78 +163,18 @@ Outcome<bool> CsvReader::read_header() {
   return true;
 }
 
-std::string CsvReader::column_name(const CsvConfig& config, const std::string& canonical) const {
-  const auto renamed = config.renamed.find(canonical);
-  return renamed == config.renamed.end() ? canonical : renamed->second;
-}
-
-Outcome<bool> CsvReader::choose_columns(const CsvConfig& config) {
-  names_ = config.required;
-  names_.insert(names_.end(), config.optional.begin(), config.optional.end());
-  place_of_.assign(header_.size(), kUnused);
-  present_.assign(names_.size(), false);
-  for (std::size_t place = 0; place < names_.size(); ++place) {
-    const std::string name = column_name(config, names_[place]);
-    if (names_[place] == config.time_column) time_place_ = place;
-    const auto times = std::count(header_.begin(), header_.end(), name);
-    if (times > 1) {
-      return Failure{Errc::kMalformed, fmt::format("{}: column {} stands twice in the header",
-                                                   reader_.name(), quote(name))};
-    }
-    if (times == 1) {
-      const auto column = std::find(header_.begin(), header_.end(), name) - header_.begin();
-      std::size_t& taken = place_of_[static_cast<std::size_t>(column)];
-      if (taken != kUnused) {
-        return Failure{Errc::kInvalidConfig,
-                       fmt::format("{}: column {} is asked for as {} and as {}", reader_.name(),
-                                   quote(name), names_[taken], names_[place])};
-      }
-      taken = place;
-      present_[place] = true;
-    } else if (place < config.required.size() || config.renamed.count(names_[place]) > 0) {
-      return Failure{
-          Errc::kMalformed,
-          fmt::format("{}: found no column {}{}, expected it among: {}", reader_.name(),
-                      quote(name), name == names_[place] ? "" : " (for " + names_[place] + ")",
-                      joined(header_))};
-    }
-  }
-  if (time_place_ != kUnused && !present_[time_place_]) time_place_ = kUnused;
-  for (std::size_t column = 0; column < header_.size(); ++column) {
-    if (place_of_[column] == kUnused) ignored_.push_back(header_[column]);
-  }
-  return true;
-}
-
-Outcome<std::unique_ptr<CsvReader>> CsvReader::open(const CsvConfig& config) {
+Outcome<std::unique_ptr<CsvReader>> CsvReader::open(const RowFileConfig& config) {
   Outcome<LineReader> lines = LineReader::open(config.path);
   if (!lines.ok()) return lines.failure();
   std::unique_ptr<CsvReader> reader{new CsvReader{config, std::move(lines.value())}};
   if (Outcome<bool> header = reader->read_header(); !header.ok()) return header.failure();
-  if (Outcome<bool> columns = reader->choose_columns(config); !columns.ok())
+  if (Outcome<bool> columns = reader->choose_columns(config, reader->reader_.name()); !columns.ok())
     return columns.failure();
   return reader;
 }
 
-Outcome<std::vector<std::string>> CsvReader::header_of(const std::string& path) {
-  CsvConfig config;
-  config.path = path;
-  Outcome<std::unique_ptr<CsvReader>> reader = open(config);
-  if (!reader.ok()) return reader.failure();
-  return reader.value()->header();
-}
-
-CsvReader::CsvReader(const CsvConfig& config, LineReader reader)
-    : reader_{std::move(reader)},
-      time_column_{config.time_column},
-      skip_bad_lines_{config.skip_bad_lines} {}
-
-bool CsvReader::has(std::string_view canonical) const noexcept {
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (names_[i] == canonical) return present_[i];
-  }
-  return false;
-}
+CsvReader::CsvReader(const RowFileConfig& config, LineReader reader)
+    : RecordedRows{config}, reader_{std::move(reader)} {}
 
 Result<std::size_t> CsvReader::do_read(std::span<double> out) noexcept {
   const std::size_t width = names_.size();
@@ -191,8 +207,7 @@ CsvReader::Step CsvReader::read_one(std::span<double> row) noexcept {
     case LineReader::Status::kError:
       break;
   }
-  return stop(Errc::kIo, fmt::format("{}: cannot be read: {}", reader_.name(),
-                                     std::strerror(reader_.error_number())));
+  return stop(reader_.error(), reader_.error_text());
 }
 
 /// Words in every cell of the first line after the header.
@@ -204,11 +219,21 @@ bool CsvReader::take_units(std::string_view line) noexcept {
   double number = 0.0;
   for (bool more = true; more; ++cells) {
     const std::string_view cell = take_cell(rest, separator_, more);
-    if (!cell.empty() && read_number(cell, separator_, number)) return false;
+    if (!cell.empty() && (read_number(cell, separator_, number) || read_stamp(cell))) return false;
     any = any || !cell.empty();
   }
   if (!any || cells != header_.size()) return false;
   units_ = cells_of(line, separator_);
+  return true;
+}
+
+/// A number, or a date with a time of day: s from the first one.
+bool CsvReader::read_cell(std::string_view cell, double& number) noexcept {
+  if (read_number(cell, separator_, number)) return true;
+  const std::optional<Stamp> stamp = read_stamp(cell);
+  if (!stamp) return false;
+  if (!first_stamp_ns_) first_stamp_ns_ = stamp->utc_ns;
+  number = static_cast<double>(stamp->utc_ns - *first_stamp_ns_) / 1e9;
   return true;
 }
 
@@ -225,7 +250,7 @@ CsvReader::Step CsvReader::take_line(std::string_view line, std::span<double> ro
     const std::size_t at = line.size() - rest.size();
     const std::string_view cell = take_cell(rest, separator_, more);
     const std::size_t place = place_of_[column];
-    if (place == kUnused || read_number(cell, separator_, row[place])) continue;
+    if (place == kUnused || read_cell(cell, row[place])) continue;
     return bad_line(at + 1, quote(cell), fmt::format("a number for {}", header_[column]));
   }
   if (column < place_of_.size() || (more && !rest.empty())) {
@@ -233,42 +258,26 @@ CsvReader::Step CsvReader::take_line(std::string_view line, std::span<double> ro
     return bad_line(line.size() + 1, fmt::format("{} cells", cells),
                     fmt::format("{}", place_of_.size()));
   }
-  if (time_place_ != kUnused) {
-    const double time = row[time_place_];
-    const bool first = health_.rows == 0;
-    if (!(first ? std::isfinite(time) : time > newest_time_ && time - first_time_ < kMostS)) {
-      const std::string expected = first ? "a time" : fmt::format("a time after {}", newest_time_);
-      return bad_line(1, fmt::format("{} = {}", time_column_, time), expected);
-    }
-    if (!first && skip_bad_lines_ && !is_near(time))
-      return bad_line(1, fmt::format("{} = {}", time_column_, time), "no time that is far ahead");
-    if (first) first_time_ = time;
-    newest_time_ = time;
-  }
-  ++health_.rows;
+  if (const std::string fault = check_time(row); !fault.empty())
+    return bad_line(fmt::format("{}:{}:1: {}", reader_.name(), reader_.line_number(), fault));
   health_.line = reader_.line_number();
   return Step::kRow;
 }
 
-/// Few rows that are far ahead are wrong, or all that follow would be; many are a pause.
-bool CsvReader::is_near(double time) noexcept {
-  const bool goes_on = time > far_time_ && time - far_time_ < kFarS;
-  far_rows_ = time - newest_time_ < kFarS ? 0 : goes_on ? far_rows_ + 1 : 1;
-  far_time_ = time;
-  const bool near = far_rows_ == 0 || far_rows_ > kFarRows;
-  if (near) far_rows_ = 0;
-  return near;
-}
-
 CsvReader::Step CsvReader::bad_line(std::size_t column, std::string found,
                                     std::string expected) noexcept {
+  return bad_line(fmt::format("{}:{}:{}: found {}, expected {}", reader_.name(),
+                              reader_.line_number(), column, found, expected));
+}
+
+CsvReader::Step CsvReader::bad_line(std::string text) noexcept {
   ++health_.malformed;
   if (skip_bad_lines_) return Step::kNoRow;
-  return stop(Errc::kMalformed, fmt::format("{}:{}:{}: found {}, expected {}", reader_.name(),
-                                            reader_.line_number(), column, found, expected));
+  return stop(Errc::kMalformed, std::move(text));
 }
 
 CsvReader::Step CsvReader::end_of_file() noexcept {
+  health_.truncated = health_.truncated || reader_.is_cut_off();
   if (health_.rows > 0) return stop(Errc::kEndOfStream, {});
   return stop(Errc::kMalformed, fmt::format("{}: found a header but no row", reader_.name()));
 }

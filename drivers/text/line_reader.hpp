@@ -3,15 +3,19 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "drivers/bytes/byte_stream.hpp"
 #include "drivers/outcome.hpp"
 
 namespace dampline::drivers {
 
-/// Lines of a text file or of standard input through one fixed buffer, whatever the file's size.
+/// Lines of a text file or of standard input, decompressed where they are gzip or zstd, through one
+/// fixed buffer, whatever the file's size.
 /// Never waits: a pipe that has nothing yet gives kNothingYet.
 class LineReader {
  public:
@@ -24,16 +28,16 @@ class LineReader {
     kTooLong,     ///< a line above kLongestLine; its beginning is given, the rest is skipped
     kNothingYet,  ///< a pipe is open but empty
     kEnd,
-    kError,  ///< error_number() says why
+    kError,  ///< error() and error_text() say why
   };
 
   /// path "-" is standard input.
   static Outcome<LineReader> open(const std::string& path);
-  LineReader(LineReader&& other) noexcept;
+  LineReader(LineReader&& other) noexcept = default;
   LineReader& operator=(LineReader&&) = delete;
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
-  ~LineReader();
+  ~LineReader() = default;
 
   /// The view is good until the next call of next() or peek().
   Status next(std::string_view& line) noexcept {
@@ -49,14 +53,19 @@ class LineReader {
   bool wait(std::chrono::nanoseconds timeout) noexcept;
 
   [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
-  [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  [[nodiscard]] int error_number() const noexcept { return error_number_; }
+  [[nodiscard]] const std::string& name() const noexcept { return stream_.name(); }
+  [[nodiscard]] Errc error() const noexcept { return stream_.error(); }
+  /// With the file's name.
+  [[nodiscard]] std::string error_text() const { return stream_.error_text(); }
+  /// At the end: compressed data stopped in the middle.
+  [[nodiscard]] bool is_cut_off() const noexcept { return stream_.is_cut_off(); }
+  /// Of the file as it lies there, 0...1; none of a pipe.
+  [[nodiscard]] std::optional<double> share_read() const noexcept { return stream_.share_read(); }
 
  private:
-  LineReader(std::string name, int descriptor, bool may_block);
+  explicit LineReader(ByteStream stream) : stream_{std::move(stream)}, buffer_(kBuffer) {}
   Status next_slowly(std::string_view& line) noexcept;
   Status fill() noexcept;
-  [[nodiscard]] bool readable(int timeout_ms) const noexcept;
   std::string_view cut(const char* begin, std::size_t length) noexcept {
     begin_ += length + 1;
     ++line_number_;
@@ -64,12 +73,10 @@ class LineReader {
     return {begin, length};
   }
 
-  std::string name_;  // for messages
-  int descriptor_;
-  bool may_block_;
+  ByteStream stream_;
   bool at_end_{false};
   bool discarding_{false};  // inside a line that was too long
-  int error_number_{0};
+  bool failed_{false};
   std::size_t begin_{0};
   std::size_t end_{0};
   std::uint64_t line_number_{0};

@@ -75,6 +75,16 @@ std::string printable(std::string_view text, bool lines) {
   return out;
 }
 
+std::string list_names(const std::vector<std::string>& names, std::size_t most) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    out += (i == 0 ? "" : ", ") + names[i].substr(0, kShown);
+    if (names[i].size() > kShown) out += "...";
+  }
+  if (names.size() > most) out += fmt::format(" and {} more", names.size() - most);
+  return out;
+}
+
 std::string nearest_names(std::string_view wanted, const std::string* names, std::size_t count,
                           std::size_t most) {
   std::vector<std::size_t> distance(count);

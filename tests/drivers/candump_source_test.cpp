@@ -8,6 +8,7 @@
 
 #include "drivers/candump/source.hpp"
 #include "temporary_file.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::drivers {
 namespace {
@@ -21,7 +22,7 @@ struct Outcomes {
   std::string error;
 };
 
-Outcomes read_all(CandumpConfig config, std::string_view text) {
+Outcomes read_all(FrameFileConfig config, std::string_view text) {
   const TemporaryFile file{text, ".log"};
   config.path = file.path();
   auto source = CandumpSource::open(config);
@@ -128,7 +129,7 @@ TEST(CandumpSource, NumbersInterfacesAsTheyAppear) {
 }
 
 TEST(CandumpSource, DeliversTheInterfacesThatWereAskedFor) {
-  CandumpConfig config;
+  FrameFileConfig config;
   config.interfaces = {"can0", "vcan3"};
   const Outcomes all =
       read_all(config, line(1.0, "can1 001#") + line(2.0, "can0 002#") + line(3.0, "vcan3 003#"));

@@ -26,7 +26,7 @@ struct Table {
   std::vector<std::string> ignored;
 };
 
-Table read_all(CsvConfig config, std::string_view text) {
+Table read_all(RowFileConfig config, std::string_view text) {
   const TemporaryFile file{text, ".csv"};
   config.path = file.path();
   Table table;
@@ -56,8 +56,8 @@ Table read_all(CsvConfig config, std::string_view text) {
   return table;
 }
 
-CsvConfig rig() {
-  CsvConfig config;
+RowFileConfig rig() {
+  RowFileConfig config;
   config.required = {"time_s", "deflection_m", "force_n"};
   return config;
 }
@@ -97,13 +97,13 @@ TEST(CsvReader, FindsTheSeparator) {
 }
 
 TEST(CsvReader, TakesColumnsByOtherNames) {
-  CsvConfig config = rig();
+  RowFileConfig config = rig();
   config.renamed = {{"deflection_m", "x_m"}, {"force_n", "F_N"}, {"time_s", "t_s"}};
   EXPECT_THAT(read_all(config, "t_s,x_m,F_N\n0,1,2\n").rows[0], ElementsAre(0.0, 1.0, 2.0));
 }
 
 TEST(CsvReader, GivesNanForAnEmptyCellAndForAColumnThatIsOptional) {
-  CsvConfig config = rig();
+  RowFileConfig config = rig();
   config.optional = {"velocity_mps"};
   const Table table = read_all(config, "time_s,deflection_m,force_n\n0,,2\n");
   ASSERT_EQ(table.rows.size(), 1U);
@@ -119,7 +119,7 @@ TEST(CsvReader, KnowsWhichColumnsTheRecordHas) {
   EXPECT_TRUE(reader.value()->has("velocity_mps"));
   EXPECT_FALSE(reader.value()->has("force_n"));
   EXPECT_FALSE(reader.value()->has("other"));
-  EXPECT_THAT(CsvReader::header_of(file.path()).value(), ElementsAre("time_s", "velocity_mps"));
+  EXPECT_THAT(header_of(file.path()).value(), ElementsAre("time_s", "velocity_mps"));
 }
 
 TEST(CsvReader, PassesNanAndInfinityOnAsSuch) {
@@ -135,7 +135,7 @@ TEST(CsvReader, NamesTheMissingColumnAndThosePresent) {
   EXPECT_FALSE(table.opened);
   EXPECT_EQ(table.error,
             "FILE: found no column \"deflection_m\", expected it among: time_s, x_m, force_n");
-  CsvConfig config = rig();
+  RowFileConfig config = rig();
   config.renamed = {{"deflection_m", "pos"}};
   EXPECT_EQ(
       read_all(config, "time_s,x_m,force_n\n0,1,2\n").error,
@@ -145,7 +145,7 @@ TEST(CsvReader, NamesTheMissingColumnAndThosePresent) {
 TEST(CsvReader, RefusesANameThatIsNotClear) {
   EXPECT_THAT(read_all(rig(), "time_s,deflection_m,force_n,force_n\n").error,
               HasSubstr("\"force_n\" stands twice"));
-  CsvConfig config = rig();
+  RowFileConfig config = rig();
   config.renamed = {{"deflection_m", "x"}, {"force_n", "x"}};
   EXPECT_THAT(read_all(config, "time_s,x\n").error,
               HasSubstr("\"x\" is asked for as deflection_m and as force_n"));
@@ -176,7 +176,7 @@ TEST(CsvReader, DeliversTheRowsBeforeABadOneAndStaysStopped) {
 }
 
 TEST(CsvReader, CountsBadRowsWhenAskedTo) {
-  CsvConfig config = rig();
+  RowFileConfig config = rig();
   config.skip_bad_lines = true;
   const Table table =
       read_all(config, "time_s,deflection_m,force_n\n0,1,2\nx\n1,1\n0,3,3\n2,3,4\n");
@@ -203,7 +203,7 @@ TEST(CsvReader, RefusesFilesOfAnotherKind) {
                                                10})
                   .error,
               HasSubstr("found binary data"));
-  EXPECT_THAT(read_all(rig(), "0,1,2\n1,1,2\n").error, HasSubstr("found numbers without a header"));
+  EXPECT_THAT(read_all(rig(), "0,1,2\n1,1,2\n").error, HasSubstr("expected it among: 1, 2, 3"));
   EXPECT_THAT(read_all(rig(), "time_s,deflection_m,force_n\n").error,
               HasSubstr("a header but no row"));
   EXPECT_THAT(CsvReader::open({.path = "/nonexistent.csv"}).error_text(),
@@ -219,7 +219,7 @@ TEST(CsvReader, BearsRandomCorruption) {
     for (std::size_t i = 28; i < text.size(); ++i) {
       if (random() % 100 < (seed % 2 == 0 ? 10 : 1)) text[i] = static_cast<char>(random());
     }
-    CsvConfig config = rig();
+    RowFileConfig config = rig();
     config.skip_bad_lines = true;
     const Table table = read_all(config, text);
     const auto lines = static_cast<std::uint64_t>(std::count(text.begin() + 28, text.end(), '\n'));
@@ -227,6 +227,51 @@ TEST(CsvReader, BearsRandomCorruption) {
     for (std::size_t i = 1; i < table.rows.size(); ++i)
       EXPECT_GT(table.rows[i][0], table.rows[i - 1][0]);
   }
+}
+
+TEST(CsvReader, TakesColumnsByNumberWhereThereIsNoHeader) {
+  RowFileConfig config = rig();
+  config.renamed = {{"time_s", "3"}, {"deflection_m", "1"}, {"force_n", "2"}};
+  const auto bare = read_all(config, "0.1 5 1.0\n0.2 6 2.0\n");
+  ASSERT_EQ(bare.rows.size(), 2U) << bare.error;
+  EXPECT_THAT(bare.rows[1], ElementsAre(2.0, 0.2, 6.0));
+  const auto named = read_all(config, "x,y,t\n0.1,5,1.0\n0.2,6,2.0\n");
+  ASSERT_EQ(named.rows.size(), 2U) << named.error;
+  EXPECT_THAT(named.rows[1], ElementsAre(2.0, 0.2, 6.0));
+  config.renamed["force_n"] = "4";
+  EXPECT_THAT(read_all(config, "0.1 5 1.0\n0.2 6 2.0\n").error,
+              HasSubstr("expected it among: 1, 2, 3"));
+}
+
+TEST(CsvReader, ReadsColumnsBetweenBlanks) {
+  const auto out = read_all(rig(), "  time_s  deflection_m   force_n \n  0.0  1e-3 5\n 0.1 -  6\n");
+  ASSERT_EQ(out.rows.size(), 2U) << out.error;
+  EXPECT_EQ(out.rows[0][1], 1e-3);
+  EXPECT_EQ(out.rows[1][2], 6.0);
+}
+
+TEST(CsvReader, TakesDatesAsTime) {
+  const auto out = read_all(rig(),
+                            "time_s,deflection_m,force_n\n2024-02-29T23:59:59.750Z,1,5\n"
+                            "2024-03-01 00:00:00.001,2,6\n2024-03-01T01:00:01+01:00,3,7\n");
+  ASSERT_EQ(out.rows.size(), 3U) << out.error;
+  EXPECT_EQ(out.rows[0][0], 0.0);
+  EXPECT_NEAR(out.rows[1][0], 0.251, 1e-12);
+  EXPECT_NEAR(out.rows[2][0], 1.25, 1e-12);
+  EXPECT_THAT(read_all(rig(), "time_s,deflection_m,force_n\n2024-02-30T00:00:00,1,5\n").error,
+              HasSubstr("found \"2024-02-30T00:00:00\", expected a number for time_s"));
+}
+
+TEST(CsvReader, PassesOverWhatDevicesWriteBeforeTheHeader) {
+  const std::string preamble =
+      "Catman export\nJob;Damper 7\nSample rate [Hz];300\n\nOperator;A;B\n";
+  const auto plain =
+      read_all(rig(), preamble + "time_s;deflection_m;force_n\n0,0;1,5;5\n0,1;2,5;6\n0,2;3,5;7\n");
+  ASSERT_EQ(plain.rows.size(), 3U) << plain.error;
+  EXPECT_EQ(plain.rows[0][1], 1.5);
+  const auto units =
+      read_all(rig(), preamble + "time_s;deflection_m;force_n\ns;m;N\n0,0;1,5;5\n0,1;2,5;6\n");
+  EXPECT_EQ(units.rows.size(), 2U) << units.error;
 }
 
 TEST(CsvReader, ReadsTheMeasuredRigRecords) {

@@ -5,6 +5,7 @@
 #include "drivers/dbc/channel.hpp"
 #include "drivers/dbc/parse.hpp"
 #include "temporary_file.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::drivers {
 namespace {

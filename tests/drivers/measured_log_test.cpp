@@ -12,6 +12,7 @@
 #include "drivers/candump/source.hpp"
 #include "drivers/dbc/channel.hpp"
 #include "temporary_file.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::drivers {
 namespace {

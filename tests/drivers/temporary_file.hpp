@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -33,13 +32,6 @@ class TemporaryFile {
  private:
   std::filesystem::path path_;
 };
-
-/// The folder of measured records: DAMPLINE_SHARED_DATA, or beside the project.
-inline std::filesystem::path shared_data() {
-  const char* set = std::getenv("DAMPLINE_SHARED_DATA");
-  return set != nullptr ? std::filesystem::path{set}
-                        : std::filesystem::path{DAMPLINE_SOURCE_DIR} / ".." / "shared" / "data";
-}
 
 inline std::string content_of(const std::filesystem::path& path) {
   std::ifstream in{path, std::ios::binary};

@@ -31,6 +31,8 @@
 #include "drivers/dbc/channel.hpp"
 #include "drivers/dbc/parse.hpp"
 #include "drivers/gpiod/edges.hpp"
+#include "drivers/record/frames.hpp"
+#include "drivers/record/rows.hpp"
 #include "drivers/socketcan/link.hpp"
 #include "drivers/socketcan/message.hpp"
 
@@ -123,10 +125,30 @@ void read_candump(Bytes bytes) {
     }
 }
 
+/// A recording of frames in any format, found by its content.
+void read_recording(Bytes bytes) {
+  const bool skip = (take_choice(bytes) & 1U) != 0U;
+  const MemoryFile file{bytes};
+  auto source = drivers::open_frames({.path = file.path(),
+                                      .skip_bad_lines = skip,
+                                      .interfaces = {},
+                                      .untimed = drivers::UntimedFrames{0x123, false, 0.01}});
+  if (!source) return;
+  std::array<CanFrame, 64> frames;
+  std::int64_t newest_ns = 0;
+  for (auto count = source.value()->read(frames); count; count = source.value()->read(frames))
+    for (std::size_t i = 0; i < count.value(); ++i) {
+      require(frames[i].time_ns >= newest_ns);
+      require(frames[i].length <= frames[i].data.size());
+      require(frames[i].interface_index < source.value()->interfaces().size());
+      newest_ns = frames[i].time_ns;
+    }
+}
+
 void read_csv(Bytes bytes) {
   const std::uint8_t choice = take_choice(bytes);
   const MemoryFile file{bytes};
-  drivers::CsvConfig config;
+  drivers::RowFileConfig config;
   config.path = file.path();
   config.skip_bad_lines = (choice & 1U) != 0U;
   if ((choice & 2U) != 0U) config.time_column.clear();
@@ -140,6 +162,20 @@ void read_csv(Bytes bytes) {
     require(row[0] > newest_s);
     newest_s = row[0];
   }
+}
+
+/// Rows of arrays, found by their content.
+void read_arrays(Bytes bytes) {
+  const std::uint8_t choice = take_choice(bytes);
+  const MemoryFile file{bytes};
+  drivers::RowFileConfig config;
+  config.path = file.path();
+  config.skip_bad_lines = (choice & 1U) != 0U;
+  config.optional = {"time_s", "deflection_m", "force_n"};
+  auto reader = drivers::open_rows(config);
+  if (!reader) return;
+  std::array<double, 3> row{};
+  while (reader.value()->read(row)) require(reader.value()->health().rows <= bytes.size());
 }
 
 /// The input holds what a file does without its checksums, which no fuzzer finds: they are set
@@ -345,7 +381,13 @@ void read_gpio(Bytes bytes) {
 
 constexpr std::array kReaders{Reader{"dbc", read_dbc},
                               Reader{"candump", read_candump},
+                              Reader{"screen", read_recording},
+                              Reader{"asc", read_recording},
+                              Reader{"trc", read_recording},
+                              Reader{"blf", read_recording},
+                              Reader{"compressed", read_recording},
                               Reader{"csv", read_csv},
+                              Reader{"npy", read_arrays},
                               Reader{"blackbox", read_blackbox},
                               Reader{"state", read_state},
                               Reader{"config", read_config},
