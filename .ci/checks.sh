@@ -12,6 +12,11 @@ shellcheck           the same for the scripts
 python3              hands the files to clang-tidy in groups
 libbenchmark-dev     the programs in bench/
 "
+# For .ci/nightly alone: large.
+readonly nightly_packages="
+python3-pandas       takes the table that dampline.py makes of many runs
+octave               runs loadrun.m
+"
 readonly product=(firmware_core hal drivers sim_hw app tests/published/generate)  # the last writes the core's tables
 readonly logs=build/ci
 total_passed=0

@@ -17,6 +17,11 @@ struct IoError : RunError {
   int error;  ///< errno
 };
 
+/// Who reads the standard output has gone: nothing to tell.
+struct ClosedPipe : RunError {
+  using RunError::RunError;
+};
+
 /// Wrong usage or configuration: exit code 2.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;

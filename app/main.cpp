@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "app/program.hpp"
@@ -16,15 +17,21 @@ int main(int argc, char** argv) {
   CLI::App program{
       "Identifies how a freight-car truck dissipates energy, from accelerometers in service"};
   program.name("dampline");
-  program.set_version_flag("--version", "dampline " + dampline::app::version());
+  const std::string commit = dampline::app::commit();
+  program.set_version_flag("--version", "dampline " + dampline::app::version() +
+                                            (commit.empty() ? "" : " (" + commit + ")"));
   program.require_subcommand(1);
   std::function<int()> action;
   dampline::app::add_identify_verb(program, action);
   dampline::app::add_explain_verb(program, action);
   dampline::app::add_simulate_verb(program, action);
   dampline::app::add_report_verb(program, action);
+  dampline::app::add_compare_verb(program, action);
   dampline::app::add_export_verb(program, action);
   dampline::app::list_verify_verb(program);
+  dampline::app::add_inspect_verb(program, action);
+  dampline::app::add_motion_verb(program, action);
   dampline::app::add_config_verb(program, action);
+  dampline::app::add_completion_verb(program, action);
   return dampline::app::run(program, action, argc, argv);
 }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <string>
+#include <system_error>
 
 #include "app/error.hpp"
 #include "drivers/text/quote.hpp"
@@ -24,15 +26,28 @@ inline int fail(const char* text, int code) {
   return code;
 }
 
+/// As a program does that knows nothing of pipes, after everything was cleaned up: `... | head`.
+inline int end_by_closed_pipe() {
+  std::signal(SIGPIPE, SIG_DFL);
+  return std::raise(SIGPIPE) == 0 ? 0 : 1;
+}
+
 /// The action's exit code: 0, or 1 where the run failed, 2 for a wrong usage.
 inline int exit_code(const std::function<int()>& action) {
   constexpr int kRunFailed = 1;
   try {
     const int code = action();
-    // A full disk or a closed pipe behind standard output is a failed run, not a success.
+    // A full disk behind standard output is a failed run, not a success.
+    errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return fail("standard output cannot be written", kRunFailed);
+      return errno == EPIPE ? end_by_closed_pipe()
+                            : fail("standard output cannot be written", kRunFailed);
     return code;
+  } catch (const ClosedPipe&) {
+    return end_by_closed_pipe();
+  } catch (const std::system_error& error) {
+    if (error.code() == std::errc::broken_pipe) return end_by_closed_pipe();
+    return fail(error.what(), kRunFailed);
   } catch (const UsageError& error) {
     return fail(error.what(), 2);
   } catch (const std::exception& error) {

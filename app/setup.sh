@@ -12,7 +12,9 @@ libcli11-dev         the command line
 libtomlplusplus-dev  configuration files
 nlohmann-json3-dev   parameters.json
 libfmt-dev           text output
-nettle-dev           SHA-256 of the input files
+nettle-dev           SHA-256 of the input files and of a page's scripts
+zlib1g-dev           records compressed by gzip, Vector BLF, NumPy's .npz
+libzstd-dev          records compressed by zstd
 libgpiod-dev         marker lines and the status lamp
 pkg-config           finds libgpiod and its version
 "
@@ -24,6 +26,19 @@ binutils             nm, which lists the core's symbols
 valgrind             counts instructions per sample
 systemd              systemd-analyze, which rates the service's sandbox
 mandoc               checks the man page
+python3-jsonschema   holds the JSON files of runs against their schema
+python3-numpy        reads runs by dampline.py, and writes arrays
+dpkg-dev             finds what the Debian package depends on
+file                 tells programs from other files for it
+can-utils            log2asc and log2long, which write records for the readers
+zstd                 compresses records for them
+python3-can          writes Vector ASC and BLF and PEAK TRC
+chromium             shows the report as people see it
+chromium-driver      moves and reads it
+poppler-utils        pdftotext, which reads it from paper
+python3              drives the browser
+libhdf5-dev          reads HDF5, an optional part of the program
+python3-h5py         writes it
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

@@ -97,6 +97,17 @@ constexpr std::array<std::string_view, 16> kNotMeasured{
     "command", "cmd",     "commanded", "demand",    "target", "setpoint",   "reference", "ref",
     "soll",    "desired", "model",     "predicted", "fit",    "simulation", "sim",       "error"};
 
+/// Units of what no column of the program is.
+constexpr std::array<std::string_view, 34> kOtherUnits{
+    "v",   "mv",  "uv",  "volt", "volts", "a",   "ma",    "amp",    "%",     "deg",    "rad", "bar",
+    "pa",  "kpa", "mpa", "psi",  "hz",    "rpm", "digit", "digits", "count", "counts", "lsb", "raw",
+    "adc", "bit", "ohm", "w",    "kw",    "kg",  "degc",  "strain", "um/m",  "mv/v"};
+
+constexpr std::array<std::string_view, 6> kFrameWords{"frame",      "bogie",  "bogieframe",
+                                                      "truckframe", "rahmen", "drehgestellrahmen"};
+constexpr std::array<std::string_view, 8> kWheelsetWords{
+    "wheelset", "ws", "axle", "axlebox", "box", "radsatz", "achslager", "achse"};
+
 /// A letter in the place of two bytes of UTF-8.
 std::string with_letter(const std::string& text, std::string_view bytes, char letter) {
   std::string out;
@@ -121,6 +132,25 @@ std::string plain_unit(std::string_view unit) {
   out = with_letter(out, "\xCE\xBC", 'u');  // mu
   std::erase_if(out, [](char c) { return c == ' ' || c == '^' || c == '*' || c == '.'; });
   return out;
+}
+
+/// Runs of letters and of digits, in their order.
+std::vector<std::string> tokens_of(std::string_view name) {
+  std::vector<std::string> out;
+  int last = 0;  // 1: a letter, 2: a digit
+  for (const char c : lowered(name)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const int kind = std::isalpha(byte) != 0 ? 1 : std::isdigit(byte) != 0 ? 2 : 0;
+    if (kind != 0 && kind != last) out.emplace_back();
+    if (kind != 0) out.back() += c;
+    last = kind;
+  }
+  return out;
+}
+
+template <std::size_t kCount>
+bool is_among(const std::array<std::string_view, kCount>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::vector<std::string> words_of(std::string_view name) {
@@ -174,6 +204,12 @@ Parts parts_of(std::string_view cell) {
   return {cell, {}};
 }
 
+bool is_known_unit(std::string_view unit) {
+  const std::string plain = plain_unit(unit);
+  return std::any_of(kUnits.begin(), kUnits.end(),
+                     [&](const Unit& known) { return known.name == plain; });
+}
+
 }  // namespace
 
 std::optional<double> unit_factor(Quantity quantity, std::string_view unit) {
@@ -184,6 +220,33 @@ std::optional<double> unit_factor(Quantity quantity, std::string_view unit) {
   for (const Unit& u : kUnits)
     if (u.quantity == quantity && u.name == plain) return u.factor;
   return std::nullopt;
+}
+
+std::optional<Column> truck_column(std::string_view cell, std::string_view unit) {
+  const HeaderName there = read_header_name(cell);
+  const std::string_view stated = unit.empty() ? std::string_view{there.unit} : unit;
+  const bool accel = unit_factor(Quantity::kAccel, stated).has_value() ||
+                     (there.quantity == Quantity::kAccel && !is_known_unit(stated));
+  bool frame = false;
+  bool wheelset = false;
+  std::string number;  // the first one behind a wheelset
+  const std::vector<std::string> tokens = tokens_of(parts_of(cell).name);
+  for (const std::string& token : tokens) {
+    if (is_among(kNotMeasured, token)) return std::nullopt;
+    frame = frame || is_among(kFrameWords, token);
+    if (wheelset && number.empty() && std::isdigit(static_cast<unsigned char>(token[0])) != 0)
+      number = token;
+    wheelset = wheelset || is_among(kWheelsetWords, token);
+  }
+  if (!accel || frame == wheelset) return std::nullopt;
+  if (frame) return Column::kFrameAccel;
+  if (number == "1") return Column::kWheelset1Accel;
+  return number == "2" ? std::optional{Column::kWheelset2Accel} : std::nullopt;
+}
+
+bool is_unit_of_other(Quantity quantity, std::string_view unit) {
+  if (unit_factor(quantity, unit)) return false;
+  return is_known_unit(unit) || is_among(kOtherUnits, plain_unit(unit));
 }
 
 HeaderName read_header_name(std::string_view cell) {

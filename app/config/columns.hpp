@@ -54,6 +54,14 @@ struct HeaderName {
 };
 [[nodiscard]] HeaderName read_header_name(std::string_view cell);
 
+/// Which of a truck's accelerations a header speaks of: "Frame acceleration [g]", "Axle box 2 (g)",
+/// "Radsatz 1 [m/s²]". `unit`: where the record says it apart from the name, else empty. None: it
+/// is no acceleration, or of neither the frame nor a numbered wheelset.
+[[nodiscard]] std::optional<Column> truck_column(std::string_view cell, std::string_view unit);
+
+/// A unit that is known, and not one of this quantity: V, A, %, or mm of a force.
+[[nodiscard]] bool is_unit_of_other(Quantity quantity, std::string_view unit);
+
 /// From a unit to the canonical one of a quantity: s, m, m/s, N, m/s^2. None: it is not known.
 [[nodiscard]] std::optional<double> unit_factor(Quantity quantity, std::string_view unit);
 

@@ -156,7 +156,8 @@ class Loader {
                   std::vector<Open>& tables) {
     const std::string inner =
         path.empty() ? std::string{key.str()} : fmt::format("{}.{}", path, key.str());
-    if (inner == "run") return;  // provenance that a run directory adds to its configuration
+    if (inner == "run" && node.is_table() && (*node.as_table())["version"].is_string())
+      return;  // provenance that a run directory adds to its configuration
     if (node.is_table() && is_table_name(inner, known_)) {
       tables.push_back({inner, node.as_table()});
       return;
@@ -200,6 +201,10 @@ Config load_config(const std::filesystem::path& file) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
   const auto text = drivers::read_whole(file.string(), kMostBytes);
   if (!text.ok()) throw UsageError{text.error_text()};
+  if (text.value().find('=') == std::string::npos)
+    throw UsageError{fmt::format(
+        "{}: found no key, expected a configuration as `dampline config show` prints it",
+        file.string())};
   Config config = parse_config(text.value(), file.string());
   std::string& dbc = config.input.can.dbc;
   if (!dbc.empty() && std::filesystem::path{dbc}.is_relative())

@@ -109,8 +109,16 @@ struct GpioConfig {
   std::string lamp;                ///< "7" or "7:active_low"; empty: no lamp
 };
 
+/// What a record is of: words that the results carry with them.
+struct RecordLabels {
+  std::string vehicle;
+  std::string truck;
+  std::string note;
+};
+
 /// Everything a person can set, with defaults that work.
 struct Config {
+  RecordLabels record;
   CarConfig car;
   InputConfig input;
   ModelConfig model;
@@ -123,7 +131,7 @@ struct Config {
 
 /// Reads a TOML file over the defaults. Relative paths in it become relative to its folder.
 /// Throws UsageError naming file, line and key for an unknown key, a wrong type or a value out of
-/// range; the tables [run] of a run directory's own run.toml is passed over.
+/// range, or no key at all; the table [run] of a run directory's own run.toml is passed over.
 [[nodiscard]] Config load_config(const std::filesystem::path& file);
 
 /// The same from text; `origin` is what errors call it.

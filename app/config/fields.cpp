@@ -44,6 +44,14 @@ constexpr std::array<std::string_view, kChannels> kCounterKeys{"frame_counter", 
 
 using Fields = std::vector<Field>;
 
+void add_record(RecordLabels& record, Fields& out) {
+  out.push_back({"record", "vehicle", "whose record it is: number of the car, or of the rig",
+                 TextField{&record.vehicle, {}}});
+  out.push_back({"record", "truck", "which truck of it", TextField{&record.truck, {}}});
+  out.push_back({"record", "note", "anything that a reader should know: load, route, parts changed",
+                 TextField{&record.note, {}}});
+}
+
 void add_car(CarConfig& car, Fields& out) {
   out.push_back({"car", "moving_mass_kg", "truck frame and its share of the body",
                  NumberField{&car.moving_mass_kg, {1.0, 1e6}}});
@@ -182,6 +190,7 @@ void add_gpio(GpioConfig& gpio, Fields& out) {
 
 std::vector<Field> fields(Config& config) {
   Fields out;
+  add_record(config.record, out);
   add_car(config.car, out);
   add_input(config.input, out);
   add_model(config.model, out);

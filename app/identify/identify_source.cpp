@@ -55,17 +55,20 @@ void Progress::clear() {
   shown_ = false;
 }
 
-std::optional<double> estimate_lines(const std::string& path) {
+PipeEnd::PipeEnd(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
-  std::array<char, 65536> head{};
-  std::ifstream stream{path, std::ios::binary};
-  stream.read(head.data(), head.size());
-  const auto count = static_cast<double>(stream.gcount());
-  const auto lines = static_cast<double>(std::count(head.begin(), head.end(), '\n'));
-  if (error || lines < 1.0) return std::nullopt;
-  return bytes * lines / count;
+  const auto type = std::filesystem::status(path, error).type();
+  if (path == "-" || type == std::filesystem::file_type::fifo ||
+      type == std::filesystem::file_type::character)
+    stop_.emplace();
+}
+
+bool PipeEnd::reached(bool empty) noexcept {
+  constexpr int kMostBatches = 4096;  // of a writer that goes on in spite of the signal
+  constexpr int kMostEmpty = 5;       // each was waited for
+  if (!by_signal()) return false;
+  empty_ = empty ? empty_ + 1 : 0;
+  return ++batches_ > kMostBatches || empty_ >= kMostEmpty;
 }
 
 namespace {
@@ -95,16 +98,11 @@ Identified identify_rig_file(const Config& config, const SourceOptions& source,
   return out;
 }
 
-InputFile describe_record(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return {path, "record", 0, ""};
-  return describe_input(path, "record");
-}
-
 }  // namespace
 
 std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
                                       SourceKind kind) {
-  if (kind == SourceKind::kCandump) return open_can_feed(config, source);
+  if (kind == SourceKind::kFrames) return open_can_feed(config, source);
   if (kind == SourceKind::kBlackbox) return open_blackbox_feed(config, source);
   return open_csv_feed(config, source);
 }
@@ -113,7 +111,7 @@ Identified identify_source(const Config& config, const SourceOptions& source, So
                            bool show_progress) {
   // Beside the identification, so that a checksum costs no time.
   auto record = std::async(std::launch::async, describe_record, source.path);
-  Identified out = kind == SourceKind::kRigCsv
+  Identified out = kind == SourceKind::kRigRows
                        ? identify_rig_file(config, source, show_progress)
                        : identify_truck(config, source, kind, show_progress);
   out.inputs.insert(out.inputs.begin(), record.get());

@@ -12,6 +12,7 @@
 #include "app/config/config.hpp"
 #include "app/error.hpp"
 #include "app/identify/truck_run.hpp"
+#include "app/live/process.hpp"
 #include "app/record/feed.hpp"
 #include "app/record/source_kind.hpp"
 #include "app/run/provenance.hpp"
@@ -45,10 +46,6 @@ class Progress {
   std::chrono::steady_clock::time_point next_;
 };
 
-/// How many lines a text file may have, judged by its first ones. Absent for what is no regular
-/// file.
-[[nodiscard]] std::optional<double> estimate_lines(const std::string& path);
-
 struct Identified {
   RunResult result;
   std::string state;  ///< for state.dls; empty for a rig
@@ -65,21 +62,35 @@ template <Parts kParts>
   return feed.rate().value_or(run.core().assembler().measured_rate());
 }
 
+/// When a pipe is over: at its end, or after a signal, when what its writer had still in hand is
+/// read.
+class PipeEnd {
+ public:
+  /// `path`: a regular file and a black box end by themselves; a signal ends the program then.
+  explicit PipeEnd(const std::string& path);
+  /// After each batch; an empty one was waited for.
+  [[nodiscard]] bool reached(bool empty) noexcept;
+  [[nodiscard]] bool by_signal() const noexcept { return stop_ && stop_->made(); }
+
+ private:
+  std::optional<StopRequest> stop_;
+  int batches_{0};  // since the signal
+  int empty_{0};    // in a row
+};
+
 /// Everything of `feed` through `run`. Throws RunError when the record holds no complete sample.
 template <Parts kParts>
 void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
           TruckRun<kParts>& run) {
-  const auto lines = show_progress ? estimate_lines(source.path) : std::nullopt;
   Progress progress{show_progress};
+  PipeEnd end{source.path};
   for (bool more = true; more;) {
     const Batch batch = feed.read();
     for (const CanFrame& frame : batch.frames) run.take(frame);
     for (const Sample& sample : batch.samples) run.take(sample);
-    more = batch.more;
+    more = batch.more && !end.reached(batch.frames.empty() && batch.samples.empty());
     if (!progress.due()) continue;
-    const auto share =
-        lines ? std::optional{static_cast<double>(feed.lines()) / *lines} : std::nullopt;
-    progress.show(share, run.time_s(), run.state_text());
+    progress.show(feed.share_read(), run.time_s(), run.state_text());
   }
   run.flush();
   if (run.empty())

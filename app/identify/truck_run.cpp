@@ -186,13 +186,9 @@ std::string TruckRun<kParts>::state_text() const {
 
 template <Parts kParts>
 TruckView TruckRun<kParts>::view() noexcept {
-  return {core_->snapshot(),
-          first_tick_,
-          newest_tick_,
-          first_time_ns_,
-          core_->faults(),
-          core_->alarms(),
-          core_->guard().block().wheelset_mps2};
+  return {
+      core_->snapshot(), first_tick_,     newest_tick_,    first_time_ns_,
+      newest_time_ns_,   core_->faults(), core_->alarms(), core_->guard().block().wheelset_mps2};
 }
 
 template <Parts kParts>
@@ -212,6 +208,7 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
   history_.add(newest_tick_,
                {last.snapshot.valid, last.snapshot.coulomb_n, last.snapshot.stiffness_npm});
   RunResult result = describe_truck(record, config_.model);
+  result.origin.recorded = recorded_span(first_time_ns_, newest_time_ns_);
   result.counts.emplace_back("blocks_spoilt",
                              blocks_[static_cast<std::size_t>(BlockStatus::kExcludedSpoilt)]);
   result.latency_s = core_->estimator().motion_latency_s() + config_.guards.wait_s;

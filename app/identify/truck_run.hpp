@@ -28,6 +28,7 @@ struct TruckView {
   std::int64_t first_tick{0};
   std::int64_t newest_tick{0};
   std::int64_t first_time_ns{0};
+  std::int64_t newest_time_ns{0};
   FaultView faults;
   AlarmView alarms;
   double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz, of the newest block of spectra

@@ -63,6 +63,12 @@ std::unique_ptr<hal::RecordSink> open_sink(const BlackboxSettings& settings,
   return std::move(sink.value());
 }
 
+std::vector<InputFile> inputs_of(const Config& config, const std::string& interface) {
+  std::vector<InputFile> out{{interface, "interface", 0, ""}};
+  if (!config.input.can.dbc.empty()) out.push_back(describe_input(config.input.can.dbc, "dbc"));
+  return out;
+}
+
 }  // namespace
 
 Identified identify_live(const Config& config, const std::string& interface,
@@ -103,18 +109,17 @@ Identified identify_live(const Config& config, const std::string& interface,
     progress.show({}, 0.0, line);
     std::error_code removed;  // the run directory, which is made again
     std::filesystem::create_directories(place.run, removed);
-    write_file(place.run / "live.json", to_json(result));
+    const std::string text = to_json(result);
+    write_file(place.run / "live.json", text);
+    if (!place.status.empty()) write_file(place.status, text);
   };
   LiveRun run{config,
               assembler,
-              {interface, source.get(), sink.get(), &clock, run_time},
+              {interface, source.get(), sink.get(), &clock, run_time, inputs_of(config, interface)},
               live,
               std::move(outlets)};
   Identified found = run.run();
   lines.describe(found.result);
-  found.inputs.push_back({interface, "interface", 0, ""});
-  if (!config.input.can.dbc.empty())
-    found.inputs.push_back(describe_input(config.input.can.dbc, "dbc"));
   return found;
 }
 

@@ -12,6 +12,7 @@ namespace dampline::app {
 struct LivePlace {
   std::filesystem::path run;       ///< where live.json is kept up to date
   std::filesystem::path blackbox;  ///< empty: nothing is recorded
+  std::filesystem::path status;    ///< a copy of live.json where it stays the same; or empty
   bool show_progress{false};       ///< a line on the terminal
 };
 

@@ -103,6 +103,8 @@ void LiveRun::publish_when_fresh() {
   RunResult result = live_result(acquisition_->status().front(),
                                  surroundings(std::string{name_of(state_)}), config_);
   explainer_.add_newest(result);
+  result.origin = origin_of(config_, parts_.inputs, result.origin.recorded);
+  result.origin.written_ns = parts_.clock->realtime_ns();
   publish(result);
 }
 
@@ -138,6 +140,7 @@ Identified LiveRun::conclude() {
   recorder_.events().describe(truck_.first_time_ns(), out.result);
   explainer_.conclude(out.result);
   out.state = truck_.encoded_state();
+  out.inputs = parts_.inputs;
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <latch>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "app/identify/identify_source.hpp"
@@ -12,6 +13,7 @@
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
 #include "app/live/status.hpp"
+#include "app/run/provenance.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 
@@ -32,6 +34,7 @@ struct LiveParts {
   hal::RecordSink* sink{nullptr};
   const hal::Clock* clock{nullptr};
   hal::RunTime run_time;
+  std::vector<InputFile> inputs{};  ///< the interface, and what else went in
 };
 
 /// What the main thread tells the world; each is called from the thread that called run().

@@ -76,6 +76,8 @@ RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
       result.warnings.emplace_back(error.what());
     }
   }
+  if (status.any_sample)
+    result.origin.recorded = recorded_span(status.view.first_time_ns, status.view.newest_time_ns);
   describe_frames(status.source, status.assembler, result);
   describe_live(status, around, result);
   return result;

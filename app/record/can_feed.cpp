@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/error.hpp"
 #include "app/record/feed.hpp"
 #include "app/record/frames.hpp"
 #include "drivers/blackbox/source.hpp"
-#include "drivers/candump/source.hpp"
+#include "drivers/record/frames.hpp"
 
 namespace dampline::app {
 
@@ -33,24 +35,29 @@ class CanFeed final : public SampleFeed {
     hal::Event event;
     while (source_->next_event(event)) events_.add(event);
     if (!count.ok()) return {.more = false};
+    identifiers_.take(std::span{frames_}.first(count.value()));
     return {.frames = std::span{frames_}.first(count.value())};
   }
   [[nodiscard]] RecordSignals signals() const override {
     return {wanted_, screen_of(wanted_), extras_};
   }
-  [[nodiscard]] std::uint64_t lines() const override {
-    if constexpr (requires { source_->line_number(); }) return source_->line_number();
-    return 0;
+  [[nodiscard]] std::optional<double> share_read() const override {
+    if constexpr (requires { source_->share_read(); }) return source_->share_read();
+    return std::nullopt;
   }
   [[nodiscard]] std::vector<InputFile> extra_inputs() const override {
     if (dbc_.empty()) return {};
     return {describe_input(dbc_, "dbc")};
   }
   [[nodiscard]] std::string explain_emptiness(const FrameSummary& frames) const override {
-    return explain_no_sample(source_->health(), frames.counts, wanted_);
+    const std::string busiest = identifiers_.busiest();
+    return explain_no_sample(source_->health(), frames.counts, wanted_) +
+           (busiest.empty() ? "" : "; the busiest identifiers of the record: " + busiest);
   }
   void describe(const FrameSummary& frames, RunResult& result) const override {
     describe_frames(source_->health(), frames.counts, result);
+    if constexpr (requires { source_->notes(); })
+      for (std::string& note : source_->notes()) result.notes.push_back(std::move(note));
     events_.describe(frames.first_time_ns, result);
   }
 
@@ -61,18 +68,21 @@ class CanFeed final : public SampleFeed {
   ExtraSignals extras_;
   std::array<CanFrame, kFrameBatch> frames_{};
   EventList events_;
+  IdentifierCounts identifiers_;
 };
 
 }  // namespace
 
 std::unique_ptr<SampleFeed> open_can_feed(const Config& config, const SourceOptions& source) {
   const AssemblerConfig assembler = can_channels(config);
-  drivers::CandumpConfig candump{source.path, source.skip_bad_lines, {}};
-  if (!config.input.can.interface.empty()) candump.interfaces = {config.input.can.interface};
-  auto opened = drivers::CandumpSource::open(candump);
+  drivers::FrameFileConfig file{.path = source.path, .skip_bad_lines = source.skip_bad_lines};
+  if (!config.input.can.interface.empty()) file.interfaces = {config.input.can.interface};
+  const ChannelConfig& frame = assembler.channels[0];
+  file.untimed = {frame.id, frame.extended, 1.0 / assembler.sample_rate_hz};
+  auto opened = drivers::open_frames(file);
   if (!opened.ok()) throw RunError{opened.error_text()};
-  return std::make_unique<CanFeed<drivers::CandumpSource>>(config, std::move(opened.value()),
-                                                           assembler);
+  return std::make_unique<CanFeed<drivers::RecordedFrames>>(config, std::move(opened.value()),
+                                                            assembler);
 }
 
 std::unique_ptr<SampleFeed> open_blackbox_feed(const Config& config, const SourceOptions& source) {

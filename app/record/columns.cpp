@@ -14,14 +14,18 @@
 #include "app/config/columns.hpp"
 #include "app/error.hpp"
 #include "drivers/blackbox/shelf.hpp"
-#include "drivers/csv/reader.hpp"
+#include "drivers/record/format.hpp"
+#include "drivers/record/rows.hpp"
+#include "drivers/text/kind.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 
-std::unique_ptr<drivers::CsvReader> open_csv(const InputConfig& input, const SourceOptions& source,
-                                             std::span<const Column> required,
-                                             std::span<const Column> optional) {
-  drivers::CsvConfig csv;
+std::unique_ptr<drivers::RecordedRows> open_rows(const InputConfig& input,
+                                                 const SourceOptions& source,
+                                                 std::span<const Column> required,
+                                                 std::span<const Column> optional) {
+  drivers::RowFileConfig csv;
   csv.path = source.path;
   csv.skip_bad_lines = source.skip_bad_lines;
   csv.time_column = name(Column::kTime);
@@ -29,19 +33,19 @@ std::unique_ptr<drivers::CsvReader> open_csv(const InputConfig& input, const Sou
   for (const Column column : optional) csv.optional.emplace_back(name(column));
   for (std::size_t i = 0; i < kColumns; ++i)
     if (!input.columns[i].empty()) csv.renamed[std::string{kColumnNames[i]}] = input.columns[i];
-  auto reader = drivers::CsvReader::open(csv);
+  auto reader = drivers::open_rows(csv);
   if (!reader.ok()) throw RunError{reader.error_text()};
   return std::move(reader.value());
 }
 
-void describe_csv(const drivers::CsvReader& reader, RunResult& result) {
+void describe_rows(const drivers::RecordedRows& reader, RunResult& result) {
   const hal::RowHealth health = reader.health();
   result.counts.insert(result.counts.end(), {{"rows_read", health.rows},
                                              {"lines_malformed", health.malformed},
                                              {"lines_ignored", health.ignored}});
   if (!reader.ignored_columns().empty())
-    result.notes.push_back(
-        fmt::format("Columns that were not used: {}.", fmt::join(reader.ignored_columns(), ", ")));
+    result.notes.push_back(fmt::format("Columns that were not used: {}.",
+                                       drivers::list_names(reader.ignored_columns())));
   if (health.truncated)
     result.warnings.emplace_back(
         "The file was cut off in the middle of its last line; what is before that "
@@ -53,18 +57,22 @@ void describe_csv(const drivers::CsvReader& reader, RunResult& result) {
 
 namespace {
 
-using drivers::CsvReader;
-
 struct Wanted {
   Column column;
   Quantity quantity;
   bool required;
 };
-constexpr std::array kWanted{Wanted{Column::kTime, Quantity::kTime, true},
-                             Wanted{Column::kDeflection, Quantity::kDeflection, true},
-                             Wanted{Column::kForce, Quantity::kForce, true},
-                             Wanted{Column::kVelocity, Quantity::kVelocity, false},
-                             Wanted{Column::kAccel, Quantity::kAccel, false}};
+constexpr std::array kRigWanted{Wanted{Column::kTime, Quantity::kTime, true},
+                                Wanted{Column::kDeflection, Quantity::kDeflection, true},
+                                Wanted{Column::kForce, Quantity::kForce, true},
+                                Wanted{Column::kVelocity, Quantity::kVelocity, false},
+                                Wanted{Column::kAccel, Quantity::kAccel, false}};
+constexpr std::array kTruckWanted{Wanted{Column::kTime, Quantity::kTime, true},
+                                  Wanted{Column::kFrameAccel, Quantity::kAccel, true},
+                                  Wanted{Column::kWheelset1Accel, Quantity::kAccel, true},
+                                  Wanted{Column::kWheelset2Accel, Quantity::kAccel, true},
+                                  Wanted{Column::kFrameEndAccel, Quantity::kAccel, false},
+                                  Wanted{Column::kFarFrameAccel, Quantity::kAccel, false}};
 constexpr std::array kAccelColumns{Column::kFrameAccel, Column::kWheelset1Accel,
                                    Column::kWheelset2Accel};
 constexpr std::size_t kFewestRows = 5;
@@ -76,6 +84,11 @@ const char* example_of(Quantity quantity) {
       return "0.001 # if it is in ms; 1.0 if in s";
     case Quantity::kForce:
       return "1000.0 # if it is in kN; 1.0 if in N";
+    case Quantity::kAccel:
+      return "9.80665 # if it is in g; 1.0 if in m/s^2";
+    case Quantity::kVelocity:
+      return "0.001 # if it is in mm/s; 1.0 if in m/s";
+    case Quantity::kDeflection:
     default:
       return "0.001 # if it is in mm; 1.0 if in m";
   }
@@ -88,16 +101,16 @@ struct Head {
 };
 
 std::optional<Head> head_of(const std::string& path) {
-  auto names = CsvReader::header_of(path);
+  auto names = drivers::header_of(path);
   if (!names || names.value().empty()) return std::nullopt;
   Head out{std::move(names.value()), {}};
-  drivers::CsvConfig config;
+  drivers::RowFileConfig config;
   config.path = path;
   config.skip_bad_lines = true;
   config.time_column.clear();
   for (const std::string& name : out.names)
     if (std::count(out.names.begin(), out.names.end(), name) == 1) config.optional = {name};
-  auto reader = CsvReader::open(config);
+  auto reader = drivers::open_rows(config);
   std::array<double, 1> row{};
   if (reader && reader.value()->read(row)) out.units = reader.value()->units();
   return out;
@@ -105,12 +118,12 @@ std::optional<Head> head_of(const std::string& path) {
 
 /// The median of the first steps of a column.
 double step_of(const std::string& path, const std::string& name) {
-  drivers::CsvConfig config;
+  drivers::RowFileConfig config;
   config.path = path;
   config.skip_bad_lines = true;
   config.time_column.clear();
   config.optional = {name};
-  auto reader = CsvReader::open(config);
+  auto reader = drivers::open_rows(config);
   std::vector<double> steps;
   std::array<double, 1> row{};
   double last = std::numeric_limits<double>::quiet_NaN();
@@ -130,10 +143,13 @@ class Recogniser {
       : out_{given, {}}, path_{std::move(path)}, head_{std::move(head)} {}
 
   RecognisedColumns run() {
-    if (std::all_of(kAccelColumns.begin(), kAccelColumns.end(),
-                    [&](Column c) { return is_there(out_.config.input.header(c)); }))
+    truck_ = is_truck();
+    if (truck_) {
+      for (const Wanted& wanted : kTruckWanted) look_for(wanted);
+      if (!problems_.empty()) fail();
       return out_;
-    for (const Wanted& wanted : kWanted) look_for(wanted);
+    }
+    for (const Wanted& wanted : kRigWanted) look_for(wanted);
     const bool rig = is_found(Column::kForce) || is_found(Column::kDeflection) || !lines_.empty();
     const bool timed = is_found(Column::kTime) || out_.config.input.sample_rate_is_set;
     const bool whole =
@@ -149,16 +165,47 @@ class Recogniser {
   [[nodiscard]] bool is_found(Column column) const {
     return is_there(out_.config.input.header(column));
   }
+  /// All three accelerations are there, by their names, the configuration's or the header's words.
+  [[nodiscard]] bool is_truck() const {
+    return std::all_of(kAccelColumns.begin(), kAccelColumns.end(), [&](Column column) {
+      return is_found(column) ||
+             (is_free(column) && !fitting({column, Quantity::kAccel, true}).empty());
+    });
+  }
+  /// The configuration names none for it.
+  [[nodiscard]] bool is_free(Column column) const {
+    return out_.config.input.columns[index(column)].empty();
+  }
+  [[nodiscard]] std::string unit_below(std::size_t at) const {
+    return at < head_.units.size() ? head_.units[at] : std::string{};
+  }
   [[nodiscard]] double& scale_of(Column column) { return out_.config.input.scale[index(column)]; }
 
   /// A column's name and unit; the line of units goes before what the header says.
   [[nodiscard]] HeaderName read_name(std::size_t at, Quantity quantity) const {
     HeaderName out = read_header_name(head_.names[at]);
-    if (at < head_.units.size() && !head_.units[at].empty()) {
-      out.unit = head_.units[at];
-      out.factor = unit_factor(quantity, out.unit);
-    }
+    if (const std::string below = unit_below(at); !below.empty()) out.unit = below;
+    out.factor = out.unit.empty() ? std::nullopt : unit_factor(quantity, out.unit);
     return out;
+  }
+
+  /// Where the header's words speak of it. Of several, those go whose unit is of another kind.
+  [[nodiscard]] std::vector<std::size_t> fitting(const Wanted& wanted) const {
+    const bool accel_of_truck =
+        std::find(kAccelColumns.begin(), kAccelColumns.end(), wanted.column) != kAccelColumns.end();
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < head_.names.size(); ++i) {
+      const bool fits = accel_of_truck
+                            ? truck_column(head_.names[i], unit_below(i)) == wanted.column
+                            : read_header_name(head_.names[i]).quantity == wanted.quantity;
+      if (fits) out.push_back(i);
+    }
+    std::vector<std::size_t> with_unit = out;
+    std::erase_if(with_unit, [&](std::size_t i) {
+      const HeaderName there = read_name(i, wanted.quantity);
+      return !there.unit.empty() && !there.factor;
+    });
+    return with_unit.empty() ? out : with_unit;
   }
 
   void look_for(const Wanted& wanted) {
@@ -174,36 +221,36 @@ class Recogniser {
   void check_unit(const Wanted& wanted, std::size_t at) {
     const HeaderName there = read_name(at, wanted.quantity);
     double& scale = scale_of(wanted.column);
-    const bool below = at < head_.units.size() && !head_.units[at].empty();
-    if (below && !there.factor && scale == 1.0)
+    if (scale != 1.0 || there.unit.empty() || there.factor == 1.0) return;
+    const bool below = !unit_below(at).empty();
+    if (!there.factor && (below || is_unit_of_other(wanted.quantity, there.unit)))
       throw RunError{fmt::format(
-          "{}: found \"{}\" below \"{}\", expected a number or a unit; write into the "
-          "configuration:"
-          "\n[input.scale]\n{} = {}",
-          path_, there.unit, head_.names[at], name(wanted.column), example_of(wanted.quantity))};
-    const double factor =
-        there.quantity == wanted.quantity || below ? there.factor.value_or(1.0) : 1.0;
-    if (scale != 1.0 || factor == 1.0) return;
-    if (out_.config.input.columns[index(wanted.column)].empty())
+          "{}: found \"{}\" {} \"{}\", expected a number or a unit of {}; write into the "
+          "configuration:\n[input.scale]\n{} = {}",
+          path_, there.unit, below ? "below" : "in", head_.names[at], name(wanted.column),
+          name(wanted.column), example_of(wanted.quantity))};
+    if (!there.factor) return;
+    if (is_free(wanted.column))
       throw RunError{
           fmt::format("{}: found {} in {}, expected what its name says; write into the "
                       "configuration:\n[input.scale]\n{} = {:.6g}",
-                      path_, name(wanted.column), there.unit, name(wanted.column), factor)};
-    scale = factor;
+                      path_, name(wanted.column), there.unit, name(wanted.column), *there.factor)};
+    scale = *there.factor;
     note(wanted.column, head_.names[at], there.unit);
   }
 
   void recognise(const Wanted& wanted) {
-    if (!out_.config.input.columns[index(wanted.column)].empty()) return;  // is missed later
-    std::vector<std::size_t> fitting;
-    for (std::size_t i = 0; i < head_.names.size(); ++i)
-      if (read_header_name(head_.names[i]).quantity == wanted.quantity) fitting.push_back(i);
-    if (fitting.size() == 1)
-      take(wanted, fitting.front());
-    else if (fitting.size() > 1 && wanted.required)
-      propose_one_of(wanted, fitting);
-    else if (wanted.column == Column::kTime && !out_.config.input.sample_rate_is_set)
-      problems_.emplace_back("found no column for time_s, and no [input] sample_rate_hz instead");
+    if (!is_free(wanted.column)) return;  // is missed later
+    if (truck_ && !wanted.required) return;
+    const std::vector<std::size_t> found = fitting(wanted);
+    if (found.size() == 1)
+      take(wanted, found.front());
+    else if (found.size() > 1 && wanted.required)
+      propose_one_of(wanted, found);
+    else if (wanted.column == Column::kTime && (truck_ || !out_.config.input.sample_rate_is_set))
+      problems_.emplace_back(truck_ ? "found no column for time_s"
+                                    : "found no column for time_s, and no [input] sample_rate_hz "
+                                      "instead");
     else if (wanted.required && wanted.column != Column::kTime)
       problems_.push_back(fmt::format("found no column for {}", name(wanted.column)));
   }
@@ -250,17 +297,19 @@ class Recogniser {
   }
 
   [[noreturn]] void fail() {
-    const bool rate =
-        !is_found(Column::kDeflection) && (is_found(Column::kVelocity) || is_found(Column::kAccel));
+    const bool rate = !truck_ && !is_found(Column::kDeflection) &&
+                      (is_found(Column::kVelocity) || is_found(Column::kAccel));
     std::string text = fmt::format("{}: {}; columns: {}.", path_, fmt::join(problems_, "; "),
-                                   fmt::join(head_.names, ", "));
+                                   drivers::list_names(head_.names));
     if (rate)
       text +=
           " A rig's record needs its deflection: integrate the velocity, or the acceleration twice "
           "with a high-pass below the motion's lowest frequency, and add it as deflection_m, in m.";
     if (lines_.empty()) {
-      lines_.emplace_back("deflection_m = \"...\" # and time_s, force_n: names in the header");
-      scales_.emplace_back("deflection_m = 0.001 # to m, s, N");
+      lines_.emplace_back(truck_ ? "time_s = \"...\" # its name in the header"
+                                 : "deflection_m = \"...\" # and time_s, force_n: names in the "
+                                   "header");
+      scales_.emplace_back(truck_ ? "time_s = 1.0 # to s" : "deflection_m = 0.001 # to m, s, N");
     }
     if (!rate)
       text +=
@@ -272,6 +321,7 @@ class Recogniser {
   RecognisedColumns out_;
   std::string path_;
   Head head_;
+  bool truck_{false};
   std::vector<std::string> problems_;
   std::vector<std::string> lines_;   ///< for [input.columns]
   std::vector<std::string> scales_;  ///< for [input.scale]
@@ -282,8 +332,14 @@ class Recogniser {
 RecognisedColumns recognise_columns(const Config& given, const SourceOptions& source) {
   const std::filesystem::path path{source.path};
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || path.extension() == ".log" ||
-      drivers::is_blackbox(source.path))
+  const bool piped = source.path == "-";
+  if (!piped && (!std::filesystem::exists(path, error) || path.extension() == ".log" ||
+                 drivers::is_blackbox(source.path)))
+    return {given, {}};
+  const auto format = drivers::detect_format(source.path);
+  if (!format || !holds_rows(format.value())) return {given, {}};
+  if (const auto beginning = drivers::read_head(source.path);
+      beginning && drivers::foreign_kind(beginning.value()))
     return {given, {}};
   const std::optional<Head> head = head_of(source.path);
   if (!head) return {given, {}};

@@ -59,13 +59,16 @@ class CsvFeed final : public SampleFeed {
                                              [](const auto& limit) { return limit.has_value(); });
     return out;
   }
-  [[nodiscard]] std::uint64_t lines() const override { return rows_.reader().health().line; }
+  [[nodiscard]] std::optional<double> share_read() const override {
+    return rows_.reader().share_read();
+  }
   [[nodiscard]] std::string explain_emptiness(const FrameSummary& /*unused*/) const override {
     return fmt::format("{} rows, {} malformed lines skipped", rows_.reader().health().rows,
                        rows_.reader().health().malformed);
   }
   void describe(const FrameSummary& /*unused*/, RunResult& result) const override {
-    describe_csv(rows_.reader(), result);
+    result.origin.recorded = clock_.recorded();
+    describe_rows(rows_.reader(), result);
     if (decimator_.factor() > 1)
       result.notes.push_back(
           fmt::format("Sampled at {:.6g} Hz; low-passed and thinned by {} to {:.6g} Hz.",

@@ -56,8 +56,8 @@ class SampleFeed {
   [[nodiscard]] virtual RecordSignals signals() const = 0;
   /// Of rows; none where the corridor itself measures the rate of the frames.
   [[nodiscard]] virtual std::optional<MeasuredRate> rate() const { return std::nullopt; }
-  /// Lines read so far, for the progress line.
-  [[nodiscard]] virtual std::uint64_t lines() const = 0;
+  /// Of the record, 0...1, for the progress line; none where nobody knows.
+  [[nodiscard]] virtual std::optional<double> share_read() const { return std::nullopt; }
   /// For an error message when not one sample came: what there was instead.
   [[nodiscard]] virtual std::string explain_emptiness(const FrameSummary& frames) const = 0;
   /// Adds what only the source knows: its counts, and notes for the reader of the report.
@@ -71,13 +71,13 @@ struct SourceOptions {
   bool skip_bad_lines{false};
 };
 
-/// CAN frames of a candump log, decoded through the DBC file of the configuration.
+/// CAN frames of a recording of any format, decoded through the DBC file of the configuration.
 [[nodiscard]] std::unique_ptr<SampleFeed> open_can_feed(const Config& config,
                                                         const SourceOptions& source);
 /// CAN frames as a live run recorded them.
 [[nodiscard]] std::unique_ptr<SampleFeed> open_blackbox_feed(const Config& config,
                                                              const SourceOptions& source);
-/// Rows of a CSV file with a truck's three accelerations.
+/// Rows of a table or of arrays with a truck's three accelerations.
 [[nodiscard]] std::unique_ptr<SampleFeed> open_csv_feed(const Config& config,
                                                         const SourceOptions& source);
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/error.hpp"
 #include "dampline/motion/decimator.hpp"
@@ -19,26 +21,15 @@ namespace dampline::app {
 
 namespace {
 
-constexpr std::array<std::string_view, kChannels> kKeys{"frame", "wheelset1", "wheelset2"};
-
 constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end", "far_frame"};
 
 std::string default_signal(std::string_view message) { return fmt::format("{}.ACCEL_Z", message); }
 
-drivers::Dbc open_dbc(const std::string& path) {
-  auto dbc = path.empty()
-                 ? drivers::parse_dbc(sim::dbc_text({}, {}, true), "the project's own sensors")
-                 : drivers::load_dbc(path);
-  if (!dbc.ok()) throw UsageError{fmt::format("[input.can] dbc: {}", dbc.error_text())};
-  return std::move(dbc.value());
-}
-
 ChannelConfig channel(const drivers::Dbc& dbc, const InputConfig& input, std::size_t c) {
-  const std::string signal =
-      input.can.accel[c].empty() ? default_signal(sim::kMessageNames[c]) : input.can.accel[c];
-  auto found = drivers::channel_from(dbc, signal, input.can.counter[c]);
+  auto found = drivers::channel_from(dbc, can_signal(input, c), input.can.counter[c]);
   if (!found.ok())
-    throw UsageError{fmt::format("[input.can] {}_accel: {}", kKeys[c], found.error_text())};
+    throw UsageError{
+        fmt::format("[input.can] {}_accel: {}", kTruckChannels[c], found.error_text())};
   ChannelConfig result = found.value();
   if (const auto range = input.range_mps2[c]) {
     result.accel.minimum = -*range;
@@ -56,7 +47,51 @@ ChannelConfig extra(const drivers::Dbc& dbc, const InputConfig& input, std::size
   return found.value();
 }
 
+/// Of different names, too: a DBC file may describe the same bits twice.
+bool is_one_signal(const ChannelConfig& a, const ChannelConfig& b) {
+  const bool page = a.multiplexed && b.multiplexed && a.multiplexor_value != b.multiplexor_value;
+  return a.id == b.id && a.extended == b.extended && !page &&
+         a.accel.start_bit == b.accel.start_bit && a.accel.length == b.accel.length &&
+         a.accel.order == b.accel.order;
+}
+
+void check_distinct(const AssemblerConfig& assembler, const drivers::Dbc& dbc) {
+  std::vector<std::pair<std::string_view, const ChannelConfig*>> all;
+  for (std::size_t c = 0; c < kChannels; ++c)
+    all.emplace_back(kTruckChannels[c], &assembler.channels[c]);
+  for (std::size_t e = 0; e < kExtras; ++e)
+    if (assembler.extras[e]) all.emplace_back(kExtraKeys[e], &*assembler.extras[e]);
+  for (auto later = all.begin(); later != all.end(); ++later)
+    for (auto earlier = all.begin(); earlier != later; ++earlier)
+      if (is_one_signal(*earlier->second, *later->second))
+        throw UsageError{
+            fmt::format("[input.can] {0}_accel: is the same signal of {1} as {2}_accel, expected "
+                        "one for each channel",
+                        later->first, dbc.file, earlier->first)};
+}
+
+void refuse_factors(const InputConfig& input) {
+  for (std::size_t i = 0; i < kColumns; ++i)
+    if (input.scale[i] != 1.0)
+      throw UsageError{fmt::format(
+          "[input.scale] {}: found {}, expected none: frames have their unit and factor from the "
+          "DBC file",
+          kColumnNames[i], input.scale[i])};
+}
+
 }  // namespace
+
+drivers::Dbc open_dbc(const std::string& path) {
+  auto dbc = path.empty()
+                 ? drivers::parse_dbc(sim::dbc_text({}, {}, true), "the project's own sensors")
+                 : drivers::load_dbc(path);
+  if (!dbc.ok()) throw UsageError{fmt::format("[input.can] dbc: {}", dbc.error_text())};
+  return std::move(dbc.value());
+}
+
+std::string can_signal(const InputConfig& input, std::size_t c) {
+  return input.can.accel[c].empty() ? default_signal(sim::kMessageNames[c]) : input.can.accel[c];
+}
 
 AssemblerConfig can_channels(const Config& config) {
   if (decimation(config.input.sample_rate_hz) > 1)
@@ -64,6 +99,7 @@ AssemblerConfig can_channels(const Config& config) {
         "[input] sample_rate_hz: found {}, expected at most 400 for CAN frames; CSV files may have "
         "more",
         config.input.sample_rate_hz)};
+  refuse_factors(config.input);
   const drivers::Dbc dbc = open_dbc(config.input.can.dbc);
   AssemblerConfig assembler;
   assembler.sample_rate_hz = config.input.sample_rate_hz;
@@ -71,6 +107,7 @@ AssemblerConfig can_channels(const Config& config) {
   const auto wanted = config.car.extras();
   for (std::size_t e = 0; e < kExtras; ++e)
     if (wanted[e]) assembler.extras[e] = extra(dbc, config.input, e);
+  check_distinct(assembler, dbc);
   if (!SampleAssembler::check(assembler).ok())
     throw UsageError{
         fmt::format("[input.can]: the signals of {} cannot be assembled at {} Hz: one lies "
@@ -116,6 +153,28 @@ void describe_frames(const hal::SourceHealth& health, const AssemblerCounts& cou
   if (health.malformed > 0)
     result.warnings.push_back(
         fmt::format("{} malformed or damaged frames were skipped.", health.malformed));
+}
+
+void IdentifierCounts::take(std::span<const CanFrame> frames) {
+  for (const CanFrame& frame : frames) {
+    if (taken_ == kMost) return;
+    if (frame.error) continue;
+    ++counts_[{frame.id, frame.extended}];
+    ++taken_;
+  }
+}
+
+std::string IdentifierCounts::busiest() const {
+  constexpr std::size_t kShown = 8;
+  std::vector<std::pair<Identifier, std::uint64_t>> sorted{counts_.begin(), counts_.end()};
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kShown, sorted.size()); ++i)
+    out += fmt::format("{}0x{:X}{} ({})", i == 0 ? "" : ", ", sorted[i].first.first,
+                       sorted[i].first.second ? " extended" : "", sorted[i].second);
+  if (sorted.size() > kShown) out += fmt::format(" and {} more", sorted.size() - kShown);
+  return out;
 }
 
 std::string explain_no_sample(const hal::SourceHealth& health, const AssemblerCounts& counts,

@@ -47,7 +47,7 @@ RateCorrection make_correction(const MeasuredRate& measured, double nominal_hz,
 }
 
 Config with_record_rate(Config config, const SourceOptions& source, SourceKind kind) {
-  if (config.input.sample_rate_is_set || kind != SourceKind::kTruckCsv) return config;
+  if (config.input.sample_rate_is_set || kind != SourceKind::kTruckRows) return config;
   if (const double rate_hz = TruckRows{config.input, config.car.extras(), source}.first_rate_hz();
       rate_hz > 0.0)
     config.input.sample_rate_hz = rate_hz;

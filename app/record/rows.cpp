@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kWidth = std::tuple_size_v<TruckRows::Row>;
 constexpr std::size_t kRowBatch = 512;
-constexpr std::size_t kFirstRows = 2000;
+constexpr std::size_t kFirstRows = 4 * kRowBatch;
 constexpr std::array<Column, kWidth> kRowColumns{Column::kTime,           Column::kFrameAccel,
                                                  Column::kWheelset1Accel, Column::kWheelset2Accel,
                                                  Column::kFrameEndAccel,  Column::kFarFrameAccel};
@@ -28,14 +28,16 @@ TruckRows::TruckRows(const InputConfig& input, const std::array<bool, kExtras>& 
     places_.push_back(i);
     wanted.push_back(kRowColumns[i]);
   }
-  reader_ = open_csv(input, source, wanted, {});
+  reader_ = open_rows(input, source, wanted, {});
   while (first_.size() < kFirstRows && read_batch(first_)) {
   }
 }
 
 double TruckRows::first_rate_hz() const {
   std::vector<double> steps;
-  for (std::size_t i = 1; i < first_.size(); ++i) steps.push_back(first_[i][0] - first_[i - 1][0]);
+  // A pipe gives batches of any size: the same rows have to tell the rate as in a file.
+  const std::size_t rows = std::min(first_.size(), kFirstRows);
+  for (std::size_t i = 1; i < rows; ++i) steps.push_back(first_[i][0] - first_[i - 1][0]);
   if (steps.size() < 2) return 0.0;
   // Rounded times make unequal steps whose median is off, so the steps near the median are
   // averaged.

@@ -10,14 +10,15 @@
 
 #include "app/config/config.hpp"
 #include "app/record/feed.hpp"
+#include "app/run/provenance.hpp"
 #include "dampline/sample.hpp"
 #include "dampline/sample/ticks.hpp"
-#include "drivers/csv/reader.hpp"
+#include "drivers/record/rows.hpp"
 
 namespace dampline::app {
 
-/// Rows of a CSV file with a truck's time (s), three accelerations and those of the extras that are
-/// wanted (m/s^2; else 0). Throws RunError with file and line.
+/// Rows of a recording with a truck's time (s), three accelerations and those of the extras that
+/// are wanted (m/s^2; else 0). Throws RunError with file and line.
 class TruckRows {
  public:
   using Row = std::array<double, 1 + kChannels + kExtras>;
@@ -29,14 +30,14 @@ class TruckRows {
   [[nodiscard]] double first_rate_hz() const;
   /// Appends a batch; false at the end.
   bool read(std::vector<Row>& out);
-  [[nodiscard]] const drivers::CsvReader& reader() const noexcept { return *reader_; }
+  [[nodiscard]] const drivers::RecordedRows& reader() const noexcept { return *reader_; }
 
  private:
   bool read_batch(std::vector<Row>& out);
 
   std::vector<std::size_t> places_;  // in a row, of the columns that are read
   Row scale_{};
-  std::unique_ptr<drivers::CsvReader> reader_;
+  std::unique_ptr<drivers::RecordedRows> reader_;
   std::vector<double> values_;
   std::vector<Row> first_;  // read but not yet handed on
 };
@@ -56,6 +57,7 @@ class RowClock {
   };
   /// Precondition: times increase.
   Stamp next(double time_s) {
+    newest_time_s_ = time_s;
     if (!first_time_s_) {
       first_time_s_ = time_s;
       line_.start(0, 0);
@@ -72,6 +74,10 @@ class RowClock {
     return {tick, time_ns};
   }
   [[nodiscard]] MeasuredRate rate() const { return meter_.measured(); }
+  /// First and newest row, where their times are dates.
+  [[nodiscard]] RecordedSpan recorded() const {
+    return first_time_s_ ? recorded_span_s(*first_time_s_, newest_time_s_) : RecordedSpan{};
+  }
 
  private:
   static constexpr double kPeriodRange = 0.02;
@@ -81,6 +87,7 @@ class RowClock {
   TickLine line_;
   RateMeter meter_;
   std::optional<double> first_time_s_;
+  double newest_time_s_{0.0};
   std::int64_t tick_{0};
 };
 

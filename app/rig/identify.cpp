@@ -147,7 +147,7 @@ RunResult Job::replay() {
   const auto predictor = std::make_unique<core::Predictor>(
       config, identifier_->solution(findings_.terms), identifier_->block_samples());
   core::Prediction prediction;
-  pass(2.0, [&](const core::Sample& sample, const Source&) {
+  const Clock clock = pass(2.0, [&](const core::Sample& sample, const Source&) {
     again->update(sample);
     history.take(sample.tick, *again);
     if (!predictor->update(sample, prediction)) return;
@@ -156,6 +156,7 @@ RunResult Job::replay() {
   });
   findings_.errors = predictor->errors();
   RunResult result = result_of(findings_);
+  result.origin.recorded = clock.recorded();
   result.convergence = history.convergence();
   excerpt.move_to(result);
   result.excluded = excluded_.list();

@@ -13,7 +13,8 @@
 #include "app/error.hpp"
 #include "app/rig/consistent.hpp"
 #include "app/rig/wrong.hpp"
-#include "drivers/csv/reader.hpp"
+#include "drivers/bytes/spool.hpp"
+#include "drivers/record/rows.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -155,15 +156,13 @@ void check_advance(const std::string& name, const Lines& lines) {
           name, lines[i].line, lines[i].time_s)};
 }
 
-using drivers::CsvReader;
-
 /// In the order of a row: those that a record must have go first.
 constexpr std::array kOrder{Column::kDeflection, Column::kForce, Column::kTime, Column::kVelocity,
                             Column::kAccel};
 
-drivers::CsvConfig csv_config(const std::string& path, const InputConfig& input,
-                              bool skip_bad_lines) {
-  drivers::CsvConfig out;
+drivers::RowFileConfig csv_config(const std::string& path, const InputConfig& input,
+                                  bool skip_bad_lines) {
+  drivers::RowFileConfig out;
   out.path = path;
   for (const Column column : kOrder) {
     const std::string canonical{name(column)};
@@ -179,7 +178,7 @@ drivers::CsvConfig csv_config(const std::string& path, const InputConfig& input,
 
 class CsvSource final : public Source {
  public:
-  CsvSource(std::unique_ptr<CsvReader> reader, const InputConfig& input)
+  CsvSource(std::unique_ptr<drivers::RecordedRows> reader, const InputConfig& input)
       : reader_{std::move(reader)}, scale_{input.scale}, interval_s_{1.0 / input.sample_rate_hz} {}
 
   bool next(Line& line) override {
@@ -214,7 +213,7 @@ class CsvSource final : public Source {
     return row[i] * scale_[index(kOrder[i])];
   }
 
-  std::unique_ptr<CsvReader> reader_;
+  std::unique_ptr<drivers::RecordedRows> reader_;
   std::array<double, kColumns> scale_;
   double interval_s_;  ///< where the record has no time
   std::uint64_t rows_{0};
@@ -321,13 +320,11 @@ Record uniform_record(Record record) {
 }
 
 Record csv_record(const std::string& path, const InputConfig& input, bool skip_bad_lines) {
-  const auto config = csv_config(path, input, skip_bad_lines);
-  if (path == "-")
-    throw RunError{
-        "-: a rig's record is read several times and cannot come from standard input; expected a "
-        "file"};
+  const auto file = drivers::spooled(path);
+  if (!file) throw RunError{file.error_text()};
+  const auto config = csv_config(file.value(), input, skip_bad_lines);
   const auto open = [config, input]() -> std::unique_ptr<Source> {
-    auto reader = CsvReader::open(config);
+    auto reader = drivers::open_rows(config);
     if (!reader) throw RunError{reader.error_text()};
     return std::make_unique<CsvSource>(std::move(reader.value()), input);
   };

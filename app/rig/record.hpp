@@ -53,7 +53,7 @@ struct Record {
 
 /// A rig's record in a CSV file, its columns and scales as [input.columns] and [input.scale] say.
 /// Opening throws RunError naming the file and the column that is missing; reading, file and line.
-/// Standard input cannot be read several times: RunError.
+/// Standard input is copied first, as it is read several times.
 [[nodiscard]] Record csv_record(const std::string& path, const InputConfig& input,
                                 bool skip_bad_lines);
 
@@ -75,6 +75,8 @@ class Clock {
 
   [[nodiscard]] double interval_s() const noexcept { return interval_s_; }
   [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
+  /// First and last row, where their times are dates.
+  [[nodiscard]] RecordedSpan recorded() const { return recorded_span_s(first_s_, last_s_); }
   /// Interval by the first and the last row; the one in use where there are too few.
   [[nodiscard]] double mean_interval_s() const noexcept;
 

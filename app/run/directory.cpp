@@ -279,6 +279,12 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   directory.write("run.toml", files.run_toml);
 }
 
+RunFiles make_files(const Config& config, RunResult result, const std::vector<InputFile>& inputs,
+                    std::string state) {
+  result.origin = origin_of(config, inputs, result.origin.recorded);
+  return {std::move(result), write_run_toml(config, inputs), std::move(state)};
+}
+
 RunFiles read_files(const std::filesystem::path& run) {
   if (!std::filesystem::is_directory(run))
     throw RunError{fmt::format("{}: is no directory", run.string())};

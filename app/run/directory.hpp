@@ -66,6 +66,11 @@ struct RunFiles {
   std::string state;  ///< state.dls; empty: there is none
 };
 
+/// Of a result and what it was made of: the result says where it comes from, and run.toml repeats
+/// it. `inputs`: the source first.
+[[nodiscard]] RunFiles make_files(const Config& config, RunResult result,
+                                  const std::vector<InputFile>& inputs, std::string state = "");
+
 /// Stages everything. Throws RunError.
 void stage_files(const RunFiles& files, RunDirectory& directory);
 

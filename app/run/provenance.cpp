@@ -6,13 +6,33 @@
 #include <toml++/toml.h>
 
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <ctime>
 #include <fstream>
 #include <vector>
 
+#include "app/config/config.hpp"
 #include "app/error.hpp"
+#include "app/run/commit.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
+namespace {
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kMicrosecondNs = 1'000;
+
+/// Digits of `text` from `at` on as a number; none where one is no digit.
+std::optional<int> digits(std::string_view text, std::size_t at, std::size_t count) {
+  int value = 0;
+  const char* const end = text.data() + at + count;
+  const auto [stopped, error] = std::from_chars(text.data() + at, end, value);
+  if (error != std::errc{} || stopped != end || text[at] == '-') return std::nullopt;
+  return value;
+}
+
+}  // namespace
 
 InputFile describe_input(const std::filesystem::path& file, const std::string& role) {
   InputFile input{file.string(), role, 0, ""};
@@ -34,11 +54,84 @@ InputFile describe_input(const std::filesystem::path& file, const std::string& r
   return input;
 }
 
+InputFile describe_record(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return {path, "record", 0, ""};
+  return describe_input(path, "record");
+}
+
 std::string version() { return DAMPLINE_VERSION; }
+
+std::string commit() { return kCommit; }
+
+std::string utc_text(std::int64_t time_ns) {
+  const std::int64_t us = (time_ns - (time_ns < 0 ? kMicrosecondNs - 1 : 0)) / kMicrosecondNs;
+  constexpr std::int64_t kSecondUs = kSecondNs / kMicrosecondNs;
+  const std::time_t second = (us - (us < 0 ? kSecondUs - 1 : 0)) / kSecondUs;
+  std::tm utc{};
+  gmtime_r(&second, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", utc.tm_year + 1900,
+                     utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec,
+                     us - second * kSecondUs);
+}
+
+std::optional<std::int64_t> utc_ns(std::string_view text) {
+  constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:dd.ddddddZ";
+  if (text.size() != kForm.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kForm.size(); ++i)
+    if (kForm[i] != 'd' && text[i] != kForm[i]) return std::nullopt;
+  constexpr std::array<std::array<std::size_t, 2>, 7> kParts{
+      {{0, 4}, {5, 2}, {8, 2}, {11, 2}, {14, 2}, {17, 2}, {20, 6}}};
+  std::array<int, kParts.size()> part{};
+  for (std::size_t i = 0; i < kParts.size(); ++i) {
+    const std::optional<int> value = digits(text, kParts[i][0], kParts[i][1]);
+    if (!value) return std::nullopt;
+    part[i] = *value;
+  }
+  std::tm utc{};
+  utc.tm_year = part[0] - 1900;
+  utc.tm_mon = part[1] - 1;
+  utc.tm_mday = part[2];
+  utc.tm_hour = part[3];
+  utc.tm_min = part[4];
+  utc.tm_sec = part[5];
+  return std::int64_t{timegm(&utc)} * kSecondNs + part[6] * kMicrosecondNs;
+}
+
+RecordedSpan recorded_span(std::int64_t first_ns, std::int64_t last_ns) {
+  constexpr std::int64_t kFrom1990Ns = 631'152'000 * kSecondNs;
+  if (first_ns < kFrom1990Ns || last_ns < first_ns) return {};
+  return {first_ns, last_ns};
+}
+
+RecordedSpan recorded_span_s(double first_s, double last_s) {
+  constexpr double kMostS = 9.2e9;  // what 64 bits of nanoseconds hold
+  if (!(std::fabs(first_s) < kMostS && std::fabs(last_s) < kMostS)) return {};
+  const auto ns = [](double time_s) {
+    return std::int64_t{std::llround(1e6 * time_s)} * kMicrosecondNs;
+  };
+  return recorded_span(ns(first_s), ns(last_s));
+}
+
+Origin origin_of(const Config& config, const std::vector<InputFile>& inputs,
+                 const RecordedSpan& recorded) {
+  Origin out;
+  out.version = version();
+  out.commit = commit();
+  out.recorded = recorded;
+  out.vehicle = config.record.vehicle;
+  out.truck = config.record.truck;
+  out.note = config.record.note;
+  if (inputs.empty()) return out;
+  out.source = inputs.front().name;
+  out.sha256 = inputs.front().sha256;
+  out.other_inputs.assign(inputs.begin() + 1, inputs.end());
+  return out;
+}
 
 std::string write_run_toml(const Config& config, const std::vector<InputFile>& inputs) {
   std::string out =
-      show_config(config) + fmt::format("\n[run]\nversion = {}\n", toml_string(version()));
+      show_config(config) + fmt::format("\n[run]\nversion = {}\ncommit = {}\n",
+                                        toml_string(version()), toml_string(commit()));
   for (const InputFile& input : inputs) {
     out += fmt::format("\n[[run.input]]\nname = {}\nrole = {}\n", toml_string(input.name),
                        toml_string(input.role));

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/run/provenance.hpp"
 #include "dampline/explanation.hpp"
 #include "dampline/phase/view.hpp"
 #include "dampline/snapshot.hpp"
@@ -310,6 +311,7 @@ struct LatenessRow {
 /// What an identification hands to the run directory. The order of `parameters`, `counts` and
 /// `notes` is the order in which people see them.
 struct RunResult {
+  Origin origin;         ///< of what is not written: when it was recorded, no more
   std::string kind;      ///< "truck" or "rig"
   std::string headline;  ///< the result in one plain sentence
   Trust trust{Trust::kNotIdentified};

@@ -3,14 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "app/error.hpp"
 #include "drivers/text/quote.hpp"
@@ -235,10 +240,77 @@ std::vector<DensityTable> read_densities(std::string_view text, const std::strin
   return densities;
 }
 
+namespace {
+
+/// The units that columns have, as their names end in them.
+struct Symbol {
+  std::string_view unit;
+  std::string_view letters;
+};
+constexpr std::array kSymbols{Symbol{"kg", "kg"},    Symbol{"Hz", "hz"}, Symbol{"rad", "rad"},
+                              Symbol{"N", "n"},      Symbol{"m", "m"},   Symbol{"s", "s"},
+                              Symbol{"%", "percent"}};
+
+/// "N s^2/m^2" as "ns2pm2", which columns of the other tables have too: velocity_mps, accel_mps2.
+std::string suffix_of(const std::string& unit) {
+  if (unit == "%") return "percent";
+  std::string out;
+  for (const char c : unit.starts_with("1") ? unit.substr(1) : unit) {
+    if (c == '/') out += 'p';
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return out;
+}
+
+/// Factors with blanks between; none where they are no units.
+std::optional<std::string> factors_of(std::string_view letters) {
+  std::string out;
+  while (!letters.empty()) {
+    const auto* const symbol = std::find_if(kSymbols.begin(), kSymbols.end(), [&](const Symbol& s) {
+      return letters.starts_with(s.letters);
+    });
+    if (symbol == kSymbols.end()) return std::nullopt;
+    out += fmt::format("{}{}", out.empty() ? "" : " ", symbol->unit);
+    letters.remove_prefix(symbol->letters.size());
+    const std::size_t digits = std::min(letters.find_first_not_of("0123456789"), letters.size());
+    if (digits > 0) out += fmt::format("^{}", letters.substr(0, digits));
+    letters.remove_prefix(digits);
+  }
+  return out;
+}
+
+/// The inverse of suffix_of(); a text that it does not make is its own unit.
+std::string unit_of_suffix(std::string_view suffix) {
+  if (suffix == "percent") return "%";
+  const std::size_t per = suffix.find('p');
+  const auto above = factors_of(suffix.substr(0, per));
+  if (per == std::string_view::npos) return above.value_or(std::string{suffix});
+  const auto below = factors_of(suffix.substr(per + 1));
+  if (!above || !below) return std::string{suffix};
+  return fmt::format("{}/{}", above->empty() ? "1" : *above, *below);
+}
+
+/// Name and unit of an estimate by its two columns, "coulomb_n" and "coulomb_std_n".
+std::pair<std::string, std::string> named(const std::string& value, const std::string& deviation) {
+  constexpr std::string_view kMark = "_std";
+  const std::size_t at = deviation.rfind(kMark);
+  if (at == std::string::npos) return {value, ""};
+  const std::string name = deviation.substr(0, at);
+  const std::string rest = deviation.substr(at + kMark.size());
+  if (value != name + rest) return {value, ""};
+  return {name, rest.empty() ? "" : unit_of_suffix(std::string_view{rest}.substr(1))};
+}
+
+}  // namespace
+
 std::string to_csv(const Convergence& convergence) {
   std::string out = "time_s";
-  for (std::size_t i = 0; i < convergence.names.size(); ++i)
-    out += fmt::format(",{0} [{1}],{0}_std [{1}]", convergence.names[i], convergence.units[i]);
+  for (std::size_t i = 0; i < convergence.names.size(); ++i) {
+    const std::string suffix = suffix_of(convergence.units[i]);
+    out += fmt::format(",{0}{2}{1},{0}_std{2}{1}", convergence.names[i], suffix,
+                       suffix.empty() ? "" : "_");
+  }
   out += '\n';
   for (const Convergence::Row& row : convergence.rows) {
     out += fmt::format("{:.9g}", row.time_s);
@@ -257,11 +329,9 @@ Convergence read_convergence(std::string_view text, const std::string& origin) {
     convergence.rows.push_back(std::move(row));
   });
   for (std::size_t i = 1; i + 1 < header.size(); i += 2) {
-    const std::string& name = header[i];
-    const std::size_t bracket = name.find(" [");
-    convergence.names.push_back(name.substr(0, bracket));
-    convergence.units.push_back(
-        bracket == std::string::npos ? "" : name.substr(bracket + 2, name.size() - bracket - 3));
+    auto [name, unit] = named(header[i], header[i + 1]);
+    convergence.names.push_back(std::move(name));
+    convergence.units.push_back(std::move(unit));
   }
   return convergence;
 }

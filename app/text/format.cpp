@@ -47,6 +47,23 @@ QuantityText format_quantity(double value, double std) {
   return {fixed(value, decimals), fixed(std, decimals)};
 }
 
+ReadUnit read_unit(std::string_view unit, double value) {
+  constexpr double kLargeNpm = 1e5;
+  constexpr double kLargeNspm = 1e4;
+  if (unit == "m") return {1e3, "mm"};
+  if (unit == "m/s") return {1e3, "mm/s"};
+  if (unit == "N/m" && std::abs(value) >= kLargeNpm) return {1e-6, "MN/m"};
+  if (unit == "N s/m" && std::abs(value) >= kLargeNspm) return {1e-3, "kN s/m"};
+  return {1.0, std::string{unit}};
+}
+
+std::string quantity_text(double value, double std, std::string_view unit) {
+  const ReadUnit read = read_unit(unit, value);
+  const QuantityText text = format_quantity(read.factor * value, read.factor * std);
+  return fmt::format("{}{}{}{}{}", text.value, text.std.empty() ? "" : " ± ", text.std,
+                     read.name.empty() ? "" : " ", read.name);
+}
+
 std::string format_count(std::uint64_t count, const std::string& separator) {
   return group(fmt::format("{}", count), separator);
 }

@@ -16,6 +16,16 @@ struct QuantityText {
 };
 [[nodiscard]] QuantityText format_quantity(double value, double std);
 
+/// The unit in which people read a number, and the factor to it: mm for m, mm/s for m/s, MN/m and
+/// kN s/m where N/m and N s/m would need many digits; any other unit stays.
+struct ReadUnit {
+  double factor{1.0};
+  std::string name;
+};
+[[nodiscard]] ReadUnit read_unit(std::string_view unit, double value);
+/// Value and deviation in that unit: "0.2954 ± 0.0037 mm".
+[[nodiscard]] std::string quantity_text(double value, double std, std::string_view unit);
+
 /// 1234567 as "1 234 567", with `separator` between the groups.
 [[nodiscard]] std::string format_count(std::uint64_t count, const std::string& separator = " ");
 

@@ -104,7 +104,7 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
   RunResult result = found.identified;
   const Explanation explanation = conclude(found, result);
   return {summarize(explanation),
-          {std::move(result), write_run_toml(config, found.inputs), std::move(found.state)}};
+          make_files(config, std::move(result), found.inputs, std::move(found.state))};
 }
 
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
@@ -119,7 +119,7 @@ Findings explain_rig_records(const Config& config, const ExplainFlags& options,
   RunResult result = rig::identify(
       rig::csv_record(options.records.front(), config.input, options.skip_bad_lines), config);
   const Explanation explanation = rig::conclude(found, result);
-  return {summarize(explanation), {std::move(result), write_run_toml(config, inputs), ""}};
+  return {summarize(explanation), make_files(config, std::move(result), inputs)};
 }
 
 int explain(const ExplainFlags& options) {
@@ -129,8 +129,8 @@ int explain(const ExplainFlags& options) {
   const RecognisedColumns seen = recognise_columns(options.load(), first);
   const SourceKind kind = detect_source(seen.config, first);
   const Config config = with_record_rate(seen.config, first, kind);
-  Findings found = kind == SourceKind::kRigCsv ? explain_rig_records(config, options, seen.notes)
-                                               : explain_truck_record(config, options);
+  Findings found = kind == SourceKind::kRigRows ? explain_rig_records(config, options, seen.notes)
+                                                : explain_truck_record(config, options);
   const RunResult& result = found.files.result;
   options.write(found.files, directory);
   if (options.json) {
@@ -180,6 +180,7 @@ struct IdentifyFlags : RunFlags {
   std::string method;  ///< of the program that main() becomes; here for the help only
   LiveOptions live;
   std::string blackbox;
+  std::string live_file;
   bool no_blackbox{false};
   bool any_live_flag{false};
 };
@@ -195,8 +196,8 @@ void print_result(const IdentifyFlags& options, const RunResult& result,
 void check_live_flags(const IdentifyFlags& options, SourceKind kind) {
   if (options.any_live_flag && kind != SourceKind::kInterface)
     throw UsageError{fmt::format(
-        "{}: is a record; --duration, --publish-every, --read-every, --blackbox, --no-blackbox and "
-        "--realtime-priority are for an interface",
+        "{}: is a record; --duration, --publish-every, --live-file, --read-every, --blackbox, "
+        "--no-blackbox and --realtime-priority are for an interface",
         options.source.path)};
   if (options.no_blackbox && !options.blackbox.empty())
     throw UsageError{"--blackbox and --no-blackbox exclude each other"};
@@ -215,7 +216,7 @@ Identified find(const IdentifyFlags& options, const Config& config, SourceKind k
   if (kind != SourceKind::kInterface)
     return identify_source(config, options.source, kind, progress);
   return identify_live(config, options.source.path, options.live,
-                       {place, blackbox_of(options, place), progress});
+                       {place, blackbox_of(options, place), options.live_file, progress});
 }
 
 Config config_of(const IdentifyFlags& options) {
@@ -302,8 +303,8 @@ int identify(const IdentifyFlags& options) {
   if (kind == SourceKind::kInterface) remove_runs_before(options, config, place);
   Identified found = find(options, config, kind, place);
   found.result.notes.insert(found.result.notes.begin(), seen.notes.begin(), seen.notes.end());
-  const RunFiles files{std::move(found.result), write_run_toml(config, found.inputs),
-                       std::move(found.state)};
+  const RunFiles files =
+      make_files(config, std::move(found.result), found.inputs, std::move(found.state));
   write_result(options, files, directory, place, kind);
   print_result(options, files.result, place);
   return options.verdict(files.result);
@@ -320,6 +321,8 @@ void add_live_flags(CLI::App& verb, IdentifyFlags& options) {
                         "s between two versions of live.json")
             ->check(CLI::Range(0.1, kHundredYearsS))
             ->capture_default_str(),
+        verb.add_option("--live-file", options.live_file,
+                        "keep a copy of live.json at this path as well, the same for every run"),
         verb.add_option("--read-every", live.read_every_s,
                         "s between two looks at the bus: fewer wake-ups, later results; 0: as "
                         "frames arrive")
@@ -344,8 +347,8 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
       "uncertainty");
   const auto options = std::make_shared<IdentifyFlags>();
   verb->add_option("SOURCE", options->source.path,
-                   "an interface (can0, vcan0), FILE.log (candump), FILE.csv, a black box, or - "
-                   "for candump text on standard input")
+                   "an interface (can0, vcan0), a file of frames (candump, ASC, BLF, TRC) or rows "
+                   "(CSV, NumPy), a black box, or - for such a file on standard input")
       ->required();
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "

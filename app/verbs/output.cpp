@@ -43,6 +43,7 @@ TextFile::~TextFile() {
 }
 
 void TextFile::fail(const char* action) const {
+  if (is_stdout() && errno == EPIPE) throw ClosedPipe{"standard output was closed"};
   throw RunError(fmt::format("{}: {}: {}", is_stdout() ? "standard output" : path_, action,
                              std::generic_category().message(errno)));
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <csignal>
 #include <cstdint>
 #include <optional>
 
+#include "app/live/process.hpp"
 #include "app/verbs/simulate.hpp"
 #include "hal/clock.hpp"
 
@@ -16,21 +16,6 @@ void check_sending(const SimulateOptions& options);
 /// at SIGINT or SIGTERM. An interface that is down or away does not end it: frames that could not
 /// be sent are counted. Throws RunError where the interface cannot be opened.
 void send_run(const SimulateOptions& options, const SimulatedRun& run);
-
-/// While it lives, SIGINT and SIGTERM ask for an end instead of forcing one; sleeps are cut short
-/// by them. One at a time.
-class StopRequest {
- public:
-  StopRequest() noexcept;
-  StopRequest(const StopRequest&) = delete;
-  StopRequest& operator=(const StopRequest&) = delete;
-  ~StopRequest();
-  [[nodiscard]] bool made() const noexcept;
-
- private:
-  struct sigaction before_interrupt_ {};
-  struct sigaction before_terminate_ {};
-};
 
 /// When frames are due: at their distance from the first, divided by `speed`, on the monotonic
 /// clock. Each moment is reckoned from the first, so lateness does not add up.

@@ -15,7 +15,11 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action);
 void add_explain_verb(CLI::App& program, std::function<int()>& action);
 void add_simulate_verb(CLI::App& program, std::function<int()>& action);
 void add_report_verb(CLI::App& program, std::function<int()>& action);
+void add_compare_verb(CLI::App& program, std::function<int()>& action);
 void add_export_verb(CLI::App& program, std::function<int()>& action);
+void add_inspect_verb(CLI::App& program, std::function<int()>& action);
+void add_motion_verb(CLI::App& program, std::function<int()>& action);
 void add_config_verb(CLI::App& program, std::function<int()>& action);
+void add_completion_verb(CLI::App& program, std::function<int()>& action);
 
 }  // namespace dampline::app

@@ -48,8 +48,7 @@ int act(const Flags& flags) {
                         : std::filesystem::path{flags.out};
   const Config config = flags.config.empty() ? Config{} : load_config(flags.config);
   RunDirectory directory{place, flags.force};
-  const RunFiles files{identify(config, settings),
-                       write_run_toml(config, {describe_input(source, "record")}), ""};
+  const RunFiles files = make_files(config, identify(config, settings), {describe_record(source)});
   stage_files(files, directory);
   if (!flags.no_report) stage_report(files, directory);
   directory.commit();

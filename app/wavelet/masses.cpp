@@ -14,12 +14,10 @@
 #include "app/config/columns.hpp"
 #include "app/error.hpp"
 #include "app/record/columns.hpp"
-#include "drivers/csv/reader.hpp"
+#include "drivers/record/rows.hpp"
 
 namespace dampline::app::wavelet {
 namespace {
-
-using drivers::CsvReader;
 
 constexpr std::array<std::string_view, 5> kBaseWords{"base", "ground", "table", "support", "boden"};
 constexpr std::array<std::string_view, 5> kResponseWords{"response", "mass", "floor", "top",
@@ -55,7 +53,7 @@ Cell cell_of(const std::string& header) {
 }
 
 std::vector<Cell> cells_of(const std::string& path) {
-  auto names = CsvReader::header_of(path);
+  auto names = drivers::header_of(path);
   if (!names) throw RunError{names.error_text()};
   std::vector<Cell> out;
   for (const std::string& name : names.value()) out.push_back(cell_of(name));
@@ -208,7 +206,7 @@ std::vector<MassColumn> find_mass_columns(const std::string& path, int masses) {
 
 MassLines read_mass_lines(const SourceOptions& source, int masses, RunResult& reading) {
   const std::vector<MassColumn> columns = find_mass_columns(source.path, masses);
-  drivers::CsvConfig config;
+  drivers::RowFileConfig config;
   config.path = source.path;
   config.skip_bad_lines = source.skip_bad_lines;
   config.time_column.clear();  // the clock judges times
@@ -219,16 +217,16 @@ MassLines read_mass_lines(const SourceOptions& source, int masses, RunResult& re
       out.notes.push_back(fmt::format("\"{}\" times {:.6g}.", column.header, column.factor));
     out.accelerations = out.accelerations || column.role == Role::kBaseAccel;
   }
-  auto reader = CsvReader::open(config);
+  auto reader = drivers::open_rows(config);
   if (!reader) throw RunError{reader.error_text()};
-  CsvReader& csv = *reader.value();
+  drivers::RecordedRows& csv = *reader.value();
   std::vector<double> row(columns.size());
   for (auto rows = csv.read(row);; rows = csv.read(row)) {
     if (!rows && rows.error() == Errc::kEndOfStream) break;
     if (!rows) throw RunError{csv.error_text()};
     if (rows.value() > 0) out.lines.push_back(line_of(columns, row, csv.health().line));
   }
-  describe_csv(csv, reading);
+  describe_rows(csv, reading);
   return out;
 }
 

@@ -48,6 +48,7 @@ class Gatherer {
     out_.step_s = clock_.mean_interval_s();
     for (double& t : out_.time_s) t *= out_.step_s;
     out_.duration_s = out_.step_s * static_cast<double>(last_tick_ + 1);
+    out_.reading.origin.recorded = clock_.recorded();
     out_.reading.excluded = excluded_.list();
     out_.reading.excluded_more = excluded_.more();
     out_.reading.counts.insert(out_.reading.counts.begin(), {{"samples", clock_.rows()},

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/assets.hpp"
 #include "app/run/directory.hpp"
 #include "tests/app/fake_result.hpp"
 #include "tests/app/program.hpp"
@@ -49,11 +50,31 @@ class HostileRun : public testing::Test {
     EXPECT_FALSE(program_.exists("pwned")) << what;
     EXPECT_FALSE(program_.exists("run/pwned")) << what;
     const std::string page = program_.read("run/report.html");
-    for (const char* bad : {"<script", "<img", "]]></svg>", "\x1b"})
+    for (const char* bad : {"<script>alert", "<img", "]]></svg>", "\x1b"})
       EXPECT_THAT(page, Not(HasSubstr(bad))) << what;
+    expect_own_scripts(page, what);
     for (const char* bad : {"\x1b", "\x07", "\xc2\x9b"})
       EXPECT_THAT(outcome.error, Not(HasSubstr(bad))) << what;
     drawn_ += outcome.code == 0 ? 1 : 0;
+  }
+  /// The numbers of the plots, from which no text can break out, and the page's two scripts, to
+  /// which its policy keeps it.
+  static void expect_own_scripts(std::string_view page, const std::string& what) {
+    const std::string scripts = page_scripts();
+    const std::size_t own = page.find(scripts);
+    if (own == std::string_view::npos) return;  // not drawn: the page of the fixture is none
+    std::string_view rest = page.substr(0, own);
+    EXPECT_THAT(page.substr(own + scripts.size()), Not(HasSubstr("<script"))) << what;
+    EXPECT_THAT(rest, HasSubstr("default-src 'none'")) << what;
+    constexpr std::string_view kData = "<script type=\"application/json\">";
+    for (std::size_t at = rest.find("<script"); at != rest.npos; at = rest.find("<script")) {
+      rest.remove_prefix(at);
+      ASSERT_TRUE(rest.starts_with(kData)) << what;
+      const std::size_t end = rest.find('<', kData.size());
+      ASSERT_TRUE(rest.substr(end).starts_with("</script>")) << what;
+      EXPECT_TRUE(json::accept(rest.substr(kData.size(), end - kData.size()))) << what;
+      rest.remove_prefix(end);
+    }
   }
   /// Each text of the file by itself, by each of the hostile ones.
   void spoil_json(const std::string& name) {

@@ -19,11 +19,11 @@ std::string rows(double rate_hz) {
 TEST(RecordRate, IsTheFilesOwnWhereNoneWasSet) {
   const dampline::test::TemporaryFile file{rows(512.0), ".csv"};
   const SourceOptions source{file.path(), false};
-  const Config found = with_record_rate({}, source, SourceKind::kTruckCsv);
+  const Config found = with_record_rate({}, source, SourceKind::kTruckRows);
   EXPECT_NEAR(found.input.sample_rate_hz, 512.0, 0.1);
   EXPECT_NEAR(truck_rate_hz(found.input), 256.0, 0.05);
   const Config set = parse_config("[input]\nsample_rate_hz = 300.0\n", "test");
-  EXPECT_EQ(with_record_rate(set, source, SourceKind::kTruckCsv).input.sample_rate_hz, 300.0);
+  EXPECT_EQ(with_record_rate(set, source, SourceKind::kTruckRows).input.sample_rate_hz, 300.0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "app/diagnosis/rig/explain.hpp"
 #include "tests/drivers/temporary_file.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::app {
 namespace {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/explain/explained_rig.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::test {
 namespace {

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "app/verify/phase/measured.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::app {
 namespace {
@@ -80,19 +79,8 @@ TEST(MeasuredRecords, OfDifferentPeriodsAreNotCompared) {
 }
 
 MeasuredRecord measured(const std::string& name) {
-  const char* own = std::getenv("DAMPLINE_SHARED_DATA");
-  const std::filesystem::path folder = own != nullptr ? own : DAMPLINE_SOURCE_DIR "/../shared/data";
   MeasuredRecord out{.name = name, .interval_s = 1.0 / 1024.0};
-  std::ifstream stream{folder / "friction_damper" / (name + ".csv")};
-  std::string line;
-  std::getline(stream, line);
-  while (std::getline(stream, line)) {
-    std::vector<double> row;
-    for (const char* at = line.c_str(); *at != '\0';) {
-      char* end = nullptr;
-      row.push_back(std::strtod(at, &end));
-      at = *end == ',' ? end + 1 : end;
-    }
+  for (const auto& row : test::numbers(test::shared_data("friction_damper/" + name + ".csv"))) {
     out.deflection_m.push_back(row.at(1));
     out.velocity_mps.push_back(row.at(2));
     out.force_n.push_back(row.at(3));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "app/rig/identify.hpp"
 #include "app/rig/record.hpp"
 #include "simulated_rig.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::test {
 namespace {
@@ -221,12 +221,10 @@ TEST_F(IdentifyRig, RefusesACornerThatDoesNotFitTheRate) {
 
 /// A shipped configuration on the record that it was written for.
 RunResult shipped(const std::string& example, const std::string& record) {
-  const char* own = std::getenv("DAMPLINE_SHARED_DATA");
-  const std::filesystem::path folder = own != nullptr ? own : DAMPLINE_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::exists(folder / record)) return {};
+  const std::filesystem::path file = test::shared_data(record);
+  if (!std::filesystem::exists(file)) return {};
   const Config config = app::load_config(DAMPLINE_SOURCE_DIR "/app/examples/" + example);
-  return app::rig::identify(app::rig::csv_record((folder / record).string(), config.input, false),
-                            config);
+  return app::rig::identify(app::rig::csv_record(file.string(), config.input, false), config);
 }
 
 TEST(ShippedExamples, EmpsGivesThePublishedParameters) {

@@ -1,43 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "rig_run.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::test {
 namespace {
 
-std::filesystem::path shared_file(const std::string& name) {
-  const char* own = std::getenv("DAMPLINE_SHARED_DATA");
-  const std::filesystem::path folder = own != nullptr ? own : DAMPLINE_SOURCE_DIR "/../shared/data";
-  return folder / name;
-}
-
-/// Numbers of a CSV file, row by row; the first line is its header.
-std::vector<std::vector<double>> numbers(const std::filesystem::path& file) {
-  std::vector<std::vector<double>> out;
-  std::ifstream stream{file};
-  std::string line;
-  std::getline(stream, line);
-  while (std::getline(stream, line)) {
-    std::vector<double> row;
-    for (const char* at = line.c_str(); *at != '\0';) {
-      char* end = nullptr;
-      row.push_back(std::strtod(at, &end));
-      at = *end == ',' ? end + 1 : end;
-    }
-    out.push_back(std::move(row));
-  }
-  return out;
-}
-
 std::vector<rig::Sample> emps() {
   std::vector<rig::Sample> out;
-  for (const auto& row : numbers(shared_file("emps/emps_train.csv"))) {
+  for (const auto& row : numbers(shared_data("emps/emps_train.csv"))) {
     rig::Sample sample;
     sample.tick = static_cast<std::int64_t>(out.size());
     sample.deflection_m = row[1];
@@ -49,7 +24,7 @@ std::vector<rig::Sample> emps() {
 
 std::vector<rig::Sample> damper(const std::string& name) {
   std::vector<rig::Sample> out;
-  for (const auto& row : numbers(shared_file("friction_damper/" + name)))
+  for (const auto& row : numbers(shared_data("friction_damper/" + name)))
     out.push_back({static_cast<std::int64_t>(out.size()), row[1], row[2], row[3]});
   return out;
 }

@@ -57,7 +57,8 @@ TEST_F(Method, ARecordBecomesARunDirectoryWithTermsAndTheirTimeCourse) {
   expect_parameter("run", "stiffness", 25.0);
   expect_parameter("run", "cubic_stiffness", 40.0);
   EXPECT_THAT(program_.read("run/convergence.csv"),
-              StartsWith("time_s,viscous [N s/m],viscous_std [N s/m],stiffness [N/m]"));
+              StartsWith("time_s,viscous_nspm,viscous_std_nspm,stiffness_npm,stiffness_std_npm,"
+                         "cubic_stiffness_npm3,"));
   EXPECT_THAT(program_.read("run/cov.csv"),
               StartsWith("time_s,viscous_cov,stiffness_cov,cubic_stiffness_cov\n"));
   EXPECT_THAT(program_.read("run/report.html"),

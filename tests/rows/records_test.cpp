@@ -16,6 +16,7 @@
 #include "tests/app/program.hpp"
 #include "tests/drivers/temporary_file.hpp"
 #include "tests/rows/simulated.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::app::wavelet {
 namespace {

@@ -18,11 +18,14 @@ TEST(Install, PutsEverythingInPlaceAndItRuns) {
   ASSERT_EQ(install.status, 0) << install.output;
   const std::filesystem::path root = folder.path().string() + DAMPLINE_INSTALL_PREFIX;
   for (const char* const file :
-       {"bin/dampline", "share/man/man1/dampline.1", "lib/systemd/system/dampline@.service",
+       {"bin/dampline", "share/man/man1/dampline.1.gz", "lib/systemd/system/dampline@.service",
         "lib/sysusers.d/dampline.conf", "share/dampline/dampline_sensors.dbc",
-        "share/doc/dampline/README.md", "share/doc/dampline/can0.toml",
+        "share/dampline/dampline.schema.json", "share/dampline/dampline.py",
+        "share/dampline/loadrun.m", "share/doc/dampline/README.md", "share/doc/dampline/can0.toml",
         "share/doc/dampline/80-can0.network", "share/doc/dampline/90-dampline.rules",
-        "share/doc/dampline/90-dampline.sysctl", "share/doc/dampline/LICENSE"}) {
+        "share/doc/dampline/90-dampline.sysctl", "share/doc/dampline/copyright",
+        "share/doc/dampline/examples/emps.toml", "share/bash-completion/completions/dampline",
+        "share/zsh/vendor-completions/_dampline"}) {
     EXPECT_TRUE(std::filesystem::exists(root / file)) << file;
   }
   const std::string program = quoted(root / "bin/dampline");
@@ -36,13 +39,25 @@ TEST(Install, PutsEverythingInPlaceAndItRuns) {
   const std::string unit = text_of(root / "lib/systemd/system/dampline@.service");
   EXPECT_NE(unit.find("ExecStart=" DAMPLINE_INSTALL_PREFIX "/bin/dampline identify %i "),
             std::string::npos);
-  EXPECT_EQ(unit.find('@' + std::string{"CMAKE"}), std::string::npos) << "a name was not filled in";
+  EXPECT_EQ(unit.find("@bindir"), std::string::npos) << "a name was not filled in";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "etc")) << "a configuration is not replaced";
 }
 
 TEST(Samples, TheConfigurationIsRight) {
   const Ended check = shell("'" DAMPLINE_BINARY_DIR "/dampline' config check " +
                             quoted(kSource / "app/service/can0.toml"));
   EXPECT_EQ(check.status, 0) << check.output;
+}
+
+TEST(Samples, TheConfigurationHasAnEstimateAfterAMinute) {
+  const Folder folder;
+  const Ended run =
+      shell("cd " + quoted(folder.path()) +
+            " && '" DAMPLINE_BINARY_DIR
+            "/dampline' simulate --duration 60 --quiet --out run.log && "
+            "'" DAMPLINE_BINARY_DIR "/dampline' identify run.log --no-report --config " +
+            quoted(kSource / "app/service/can0.toml"));
+  EXPECT_EQ(run.status, 0) << run.output;
 }
 
 TEST(Samples, TheConfigurationIsRightWithItsExamplesToo) {

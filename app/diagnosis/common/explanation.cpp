@@ -253,7 +253,8 @@ void put_final(Explanation& e, RunResult& result) {
 std::string to_json(const Explanation& e) {
   Json steps = list_of(e.steps, [&](const Step& step) { return step_json(e, step); });
   if (e.unknown && steps.empty()) steps.push_back(unknown_step(e));
-  return json_text({{"verdict", e.verdict},
+  return json_text({{"schema", "dampline.explanation/1"},
+                    {"verdict", e.verdict},
                     {"trust", name_of(e.trust)},
                     {"trust_reasons", e.trust_reasons},
                     {"base", model_json(e.base)},

@@ -15,7 +15,7 @@
 #include "app/rig/result.hpp"
 #include "dampline/rig/motion.hpp"
 #include "dampline/rig/survey.hpp"
-#include "drivers/csv/reader.hpp"
+#include "drivers/record/rows.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -99,11 +99,11 @@ void leave_rest_out(Series& series) {
 /// One column, row by row.
 std::vector<double> read_column(const std::string& path, const std::string& column,
                                 bool skip_bad_lines) {
-  drivers::CsvConfig config;
+  drivers::RowFileConfig config;
   config.path = path;
   config.optional = {column};
   config.skip_bad_lines = skip_bad_lines;
-  const auto reader = drivers::CsvReader::open(config);
+  const auto reader = drivers::open_rows(config);
   if (!reader) throw RunError{reader.error_text()};
   std::vector<double> out;
   if (!reader.value()->has(column)) return out;

@@ -74,7 +74,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
     out.validation.push_back(
         validate(config, {path, options.source.skip_bad_lines}, ++number, out, *explainer));
   out.inputs = pass.feed->extra_inputs();
-  out.inputs.insert(out.inputs.begin(), describe_input(options.source.path, "record"));
+  out.inputs.insert(out.inputs.begin(), describe_record(options.source.path));
   for (const std::string& path : options.validation)
     out.inputs.push_back(describe_input(path, "validation"));
   out.state = pass.run->encoded_state();

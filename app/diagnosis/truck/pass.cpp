@@ -20,7 +20,7 @@ SourceKind truck_source(const Config& config, const SourceOptions& source) {
   if (kind == SourceKind::kInterface)
     throw UsageError{fmt::format(
         "{}: is an interface, expected a record: record it with identify first", source.path)};
-  if (kind == SourceKind::kRigCsv)
+  if (kind == SourceKind::kRigRows)
     throw UsageError{
         fmt::format("{}: has the columns of a rig, expected a truck's accelerations as the others",
                     source.path)};

@@ -210,6 +210,8 @@ Plot plot_measured(const MeasuredRecord& record) {
   constexpr std::size_t kMostPoints = 4000;
   constexpr double kSquare = 320.0;
   const std::size_t stride = std::max<std::size_t>(1, record.force_n.size() / kMostPoints);
+  const std::vector<Cycle> cycles =
+      measured_cycles(record) ? cycles_of(record.deflection_m) : std::vector<Cycle>{};
   const auto panel_of = [&](const char* x, const std::vector<double>& xs, double x_factor,
                             const char* y, const std::vector<double>& ys, double y_factor) {
     std::vector<svg::Point> path;
@@ -218,13 +220,13 @@ Plot plot_measured(const MeasuredRecord& record) {
     svg::Panel panel{{x}, {y}, kSquare};
     panel.line(std::move(path), {svg::Ink::kBlue, 0.8}, "measured");
     std::vector<svg::Point> dots;
-    for (const Cycle& cycle : cycles_of(record.deflection_m)) {
+    for (const Cycle& cycle : cycles) {
       for (int phase = 0; phase < kSections; ++phase) {
         const double place = cycle.from + cycle.length * phase / kSections;
         dots.push_back({x_factor * between(xs, place), y_factor * between(ys, place)});
       }
     }
-    if (measured_cycles(record)) panel.dots(std::move(dots), svg::Ink::kOrange, 2.6, "sections");
+    if (!cycles.empty()) panel.dots(std::move(dots), svg::Ink::kOrange, 2.6, "sections");
     return panel;
   };
   constexpr double kMilli = 1e3;

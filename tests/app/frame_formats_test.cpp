@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The same frames in every format give the same bytes of state.dls. The files are written by
+// can-utils (log2asc, log2long) and python3-can, never by this project.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/app/program.hpp"
+#include "tests/app/state_bytes.hpp"
+
+namespace dampline::app {
+namespace {
+
+using testing::HasSubstr;
+
+class FrameFormats : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(program_.run("simulate --duration 40 --seed 3 --quiet --out a.log").code, 0);
+    expected_ = state_of("a.log");
+    ASSERT_GT(expected_.size(), 10000U);
+  }
+  StateBytes state_of(const std::string& source, const std::string& before = "") const {
+    const auto outcome =
+        program_.run("identify --quiet --no-report --force --out run " + source, before);
+    EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
+    return {program_.read("run/state.dls")};
+  }
+  /// Runs a command of the shell in the folder; false: it failed, or there is no such program.
+  [[nodiscard]] bool shell(const std::string& command) const {
+    const std::string all = "cd '" + program_.path("").string() + "' && " + command + " 2> .shell";
+    return std::system(all.c_str()) == 0;  // NOLINT(cert-env33-c) oracles are programs
+  }
+  [[nodiscard]] bool python(const std::string& script) const {
+    program_.write("script.py", script);
+    return shell("/usr/bin/python3 script.py");
+  }
+  Program program_;
+  StateBytes expected_;
+};
+
+TEST_F(FrameFormats, CandumpOnTheScreenWithAnyTimes) {
+  if (!shell("log2long < a.log > absolute.txt")) GTEST_SKIP() << "can-utils is not installed";
+  EXPECT_EQ(state_of("absolute.txt"), expected_);
+  // The other times as candump.c prints them: "(%03llu.%06llu)", and the date in UTC.
+  ASSERT_TRUE(python(R"(
+import re, datetime
+lines = open('absolute.txt').read().splitlines()
+times = [int(re.match(r'\((\d+)\.(\d+)\)', l).expand(r'\1\2')) for l in lines]
+rest = [l[l.index(')') + 1:] for l in lines]
+short = lambda us: '(%03d.%06d)' % divmod(us, 1000000)
+date = lambda us: datetime.datetime.utcfromtimestamp(us // 1000000).strftime('(%Y-%m-%d %H:%M:%S') + '.%06d)' % (us % 1000000)
+extra = lambda r: r.replace('  can0  ', '  can0  RX - -  ', 1)
+write = lambda name, rows: open(name, 'w').write(''.join(r + '\n' for r in rows))
+write('zero.txt', [' ' + short(t - times[0]) + r for t, r in zip(times, rest)])
+write('steps.txt', [' ' + short(t - b) + extra(r) for t, b, r in zip(times, times[:1] + times, rest)])
+write('date.txt', [' ' + date(t) + r for t, r in zip(times, rest)])
+write('none.txt', rest)
+)"));
+  EXPECT_EQ(state_of("zero.txt"), expected_);
+  EXPECT_EQ(state_of("steps.txt"), expected_);
+  EXPECT_EQ(state_of("-", "cat steps.txt |"), expected_) << "the differences are seen in a pipe";
+  EXPECT_EQ(state_of("date.txt"), expected_);
+  EXPECT_EQ(state_of("none.txt").size(), expected_.size());
+  EXPECT_THAT(program_.read("run/parameters.json"), HasSubstr("has no times"));
+}
+
+TEST_F(FrameFormats, CompressedAndPiped) {
+  ASSERT_TRUE(shell("gzip -k a.log"));
+  EXPECT_EQ(state_of("a.log.gz"), expected_);
+  EXPECT_EQ(state_of("-", "cat a.log.gz |"), expected_);
+  EXPECT_EQ(state_of("/dev/stdin", "cat a.log.gz |"), expected_);
+  if (!shell("zstd -q a.log")) GTEST_SKIP() << "zstd is not installed";
+  EXPECT_EQ(state_of("a.log.zst"), expected_);
+}
+
+TEST_F(FrameFormats, VectorAscOfCanUtils) {
+  if (!shell("log2asc -I a.log can0 > a.asc")) GTEST_SKIP() << "can-utils is not installed";
+  EXPECT_EQ(state_of("a.asc"), expected_);
+  ASSERT_TRUE(shell("log2asc -f -n -I a.log can0 > f.asc"));
+  EXPECT_EQ(state_of("f.asc"), expected_) << "classic frames in CANFD lines, \\r\\n";
+}
+
+TEST_F(FrameFormats, VectorAscAndPeakTrcOfPythonCan) {
+  if (!python(R"(
+import can
+from can.io.trc import TRCFileVersion
+frames = list(can.CanutilsLogReader('a.log'))
+old = can.TRCWriter('old.trc')
+old.file_version = TRCFileVersion.V1_0
+for writer in can.ASCWriter('a.asc'), can.TRCWriter('a.trc'), old:
+    for frame in frames: writer(frame)
+    writer.stop()
+)"))
+    GTEST_SKIP() << "python3-can is not installed";
+  EXPECT_EQ(state_of("a.asc"), expected_);
+  EXPECT_EQ(state_of("a.trc"), expected_);
+  EXPECT_EQ(state_of("old.trc").size(), expected_.size())
+      << "whole ms: other times, not other bits";
+}
+
+/// Read by python-can, whose times are numbers in floating point, and by the program.
+TEST_F(FrameFormats, VectorBlfOfPythonCan) {
+  if (!python(R"(
+import can
+frames = list(can.CanutilsLogReader('a.log'))
+for level in 0, 9:
+    writer = can.BLFWriter('a%d.blf' % level, compression_level=level)
+    for frame in frames: writer(frame)
+    writer.stop()
+first = None
+with open('back.log', 'w') as out:
+    for frame in can.BLFReader('a9.blf'):
+        first = frame.timestamp if first is None else first
+        out.write('(%.9f) can0 %03X#%s\n' % (frame.timestamp - first + 1, frame.arbitration_id, frame.data.hex()))
+)"))
+    GTEST_SKIP() << "python3-can is not installed";
+  const StateBytes state = state_of("a9.blf");
+  EXPECT_EQ(state.size(), expected_.size());
+  EXPECT_EQ(state_of("a0.blf"), state);
+  EXPECT_EQ(state_of("back.log"), state);
+  ASSERT_TRUE(shell("gzip -k a9.blf"));
+  EXPECT_EQ(state_of("a9.blf.gz"), state);
+}
+
+}  // namespace
+}  // namespace dampline::app
