@@ -77,6 +77,12 @@ bool is_candump(std::string_view line) {
   return hash != std::string_view::npos && all_hex(frame.substr(0, hash), 8);
 }
 
+/// "[8]" or "[08]", and not the unit of a table's "Force A [N]".
+bool is_length(std::string_view word) {
+  return word.size() >= 3 && word.size() <= 4 && word.front() == '[' && word.back() == ']' &&
+         word.substr(1, word.size() - 2).find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 /// " (000.001000)  can0  RX - -  123   [8]  11 22": an identifier, then a length in brackets.
 bool is_candump_screen(std::string_view line) {
   while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
@@ -88,8 +94,7 @@ bool is_candump_screen(std::string_view line) {
   std::string_view before = take_word(line);
   for (int words = 0; words < 5 && !before.empty(); ++words) {
     const std::string_view word = take_word(line);
-    if (word.size() >= 3 && word.size() <= 4 && word.front() == '[' && word.back() == ']')
-      return words > 0 && all_hex(before, 8);
+    if (is_length(word)) return words > 0 && all_hex(before, 8);
     before = word;
   }
   return false;

@@ -152,7 +152,8 @@ TEST(Format, IsKnownByContent) {
   EXPECT_EQ(of("MDF     4.10    "), RecordFormat::kMdf4);
   EXPECT_EQ(of("MDF     3.30    "), RecordFormat::kMdf3);
   EXPECT_EQ(of("time_s,force_n\n0.1,2\n"), RecordFormat::kTable);
-  EXPECT_EQ(of("x [mm] y\n1 2\n"), RecordFormat::kTable) << "a unit in brackets is no length";
+  EXPECT_EQ(of("x [mm],Force A [N] y\n1 2\n"), RecordFormat::kTable)
+      << "a unit in brackets is no length";
   EXPECT_EQ(of(std::string_view{"a\0b", 3}), RecordFormat::kUnknown);
   EXPECT_FALSE(way_out_of(RecordFormat::kMdf3).empty());
   EXPECT_TRUE(way_out_of(RecordFormat::kMdf4).empty());
