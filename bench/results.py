@@ -44,6 +44,7 @@ PARTS = {
     "small_parts": "The estimate for small parts",
     "diagnosis": "Missing effects",
     "coverage": "Deviations of explained parameters",
+    "noise": "Noise on the motion of a driven mass",
     "diagnosis_pairs": "Two missing effects at once",
     "guards": "Faults",
     "combinations": "Faults beside effects, faults and changed parameters",

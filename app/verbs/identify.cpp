@@ -85,6 +85,7 @@ struct ExplainFlags : RunFlags {
   std::vector<std::string> validation;
   std::string reference;
   bool skip_bad_lines{false};
+  bool no_refine{false};
 };
 
 /// What a run directory and the terminal get.
@@ -109,8 +110,9 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
 
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
                              const std::vector<std::string>& notes) {
-  rig::Explanation found = rig::explain(
-      config, {options.records, options.validation, options.reference, options.skip_bad_lines});
+  rig::Explanation found =
+      rig::explain(config, {options.records, options.validation, options.reference,
+                            options.skip_bad_lines, !options.no_refine});
   found.notes.insert(found.notes.begin(), notes.begin(), notes.end());
   std::vector<InputFile> inputs;
   for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
@@ -168,6 +170,8 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--quiet", options->quiet, "print nothing but errors and warnings");
   verb->add_flag("--skip-bad-lines", options->skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
+  verb->add_flag("--no-refine", options->no_refine,
+                 "a driven mass: leave the law as the equations have it, without its own motion");
   options->add_strict(*verb);
   verb->callback([options, &action] { action = [options] { return explain(*options); }; });
 }

@@ -55,7 +55,7 @@ class Drive {
 };
 
 /// 600 Hz, 20 s; deflection with noise of 2 um.
-std::string record(const Law& law, const Hysteresis& hysteresis = {}) {
+std::string record(const Law& law, const Hysteresis& hysteresis = {}, double noise_m = 2e-6) {
   constexpr int kFine = 24;
   constexpr double kStepS = 1.0 / (600.0 * kFine);
   const Drive drive;
@@ -64,23 +64,27 @@ std::string record(const Law& law, const Hysteresis& hysteresis = {}) {
   double x = 0.0;
   double v = 0.0;
   double z = 0.0;
-  const auto accel = [&](double t, double at, double rate) {
-    return (drive(t) - kViscous * rate - kStiffnessNpm * at - law(at, rate) - z) / kMassKg;
+  const auto accel = [&](double t, double at, double rate, double held) {
+    return (drive(t) - kViscous * rate - kStiffnessNpm * at - law(at, rate) - held) / kMassKg;
   };
   std::string out = "time_s,deflection_m,force_n\n";
   for (int i = -600 * kFine; i < 20 * 600 * kFine; ++i) {
     const double t = i * kStepS;
     if (i >= 0 && i % kFine == 0)
-      out += fmt::format("{:.6f},{:.9f},{:.5f}\n", t, x + 2e-6 * noise(random), drive(t));
+      out += fmt::format("{:.6f},{:.9f},{:.5f}\n", t, x + noise_m * noise(random), drive(t));
     const double h = 0.5 * kStepS;
-    const double a1 = accel(t, x, v);
-    const double a2 = accel(t + h, x + h * v, v + h * a1);
-    const double a3 = accel(t + h, x + h * (v + h * a1), v + h * a2);
-    const double a4 = accel(t + kStepS, x + kStepS * (v + h * a2), v + kStepS * a3);
+    const double a1 = accel(t, x, v, z);
+    const double z1 = hysteresis.rate(v, z);
+    const double a2 = accel(t + h, x + h * v, v + h * a1, z + h * z1);
+    const double z2 = hysteresis.rate(v + h * a1, z + h * z1);
+    const double a3 = accel(t + h, x + h * (v + h * a1), v + h * a2, z + h * z2);
+    const double z3 = hysteresis.rate(v + h * a2, z + h * z2);
+    const double v4 = v + kStepS * a3;
+    const double a4 = accel(t + kStepS, x + kStepS * (v + h * a2), v4, z + kStepS * z3);
+    const double z4 = hysteresis.rate(v4, z + kStepS * z3);
     x += kStepS * v + kStepS * kStepS / 6.0 * (a1 + a2 + a3);
-    const double middle = v + 0.5 * h * (a1 + a2);
     v += kStepS / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
-    z += kStepS * hysteresis.rate(middle, z + h * hysteresis.rate(middle, z));
+    z += kStepS / 6.0 * (z1 + 2.0 * z2 + 2.0 * z3 + z4);
   }
   return out;
 }
@@ -105,6 +109,26 @@ TEST(ADrivenMass, IsWholeWhereNothingIsMissing) {
   EXPECT_TRUE(found.steps.empty()) << summarize(found);
   EXPECT_EQ(std::string{found.verdict()}, "complete");
   expect_the_rest(found);
+}
+
+TEST(ADrivenMass, IsRefinedByItsOwnMotionWhereTheMotionIsNoisy) {
+  const std::string noisy = record([](double, double) { return 0.0; }, {}, 30e-6);
+  Config config;
+  config.model.base = {"viscous"};
+  config.model.candidates = {"cubic_stiffness"};
+  config.model.inertia = config.model.stiffness = "identify";
+  const rig::Explanation found = dampline::test::explained(noisy, config);
+  EXPECT_EQ(std::string{found.verdict()}, "complete") << summarize(found);
+  const FreeRunError& run = found.final.free_run;
+  EXPECT_TRUE(run.by_motion && run.followed);
+  EXPECT_NEAR(run.residual_m, 30e-6, 1e-6);
+  EXPECT_GT(run.nmse_of_equations, 2.0 * run.nmse_of_motion) << "the equations alone are bent";
+  for (const auto& [name, truth] :
+       {std::pair{"moving_mass", kMassKg}, {"stiffness", kStiffnessNpm}, {"viscous", kViscous}}) {
+    const Parameter p = dampline::test::parameter(found, name);
+    EXPECT_NEAR(p.value, truth, 5e-3 * truth) << name;
+    EXPECT_NEAR(p.value, truth, 3.0 * p.std) << name;
+  }
 }
 
 TEST(ADrivenMass, HasASpringThatHardens) {
@@ -139,7 +163,8 @@ void expect_hysteresis(const Hysteresis& planted) {
   EXPECT_STREQ(found.verdict(), "explained") << summarize(found);
   const double travel_m = 1.0 / (planted.beta * planted.gamma);
   EXPECT_NEAR(value_of(found, "presliding_hysteresis_travel"), travel_m, 0.08 * travel_m);
-  EXPECT_NEAR(value_of(found, "presliding_hysteresis_shape"), planted.delta / planted.gamma, 0.05);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_shape"), planted.delta / planted.gamma, 0.05)
+      << summarize(found);
   EXPECT_NEAR(value_of(found, "presliding_hysteresis_stiffness"), planted.alpha,
               0.03 * planted.alpha)
       << summarize(found);

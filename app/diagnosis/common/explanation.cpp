@@ -110,6 +110,20 @@ Json fault_json(const FaultFinding& f) {
           {"unit", f.unit}};
 }
 
+/// Null where it was not tried.
+Json free_run_json(const FreeRunError& f) {
+  if (f.segments == 0) return nullptr;
+  return {{"segments", f.segments},
+          {"segment_s", f.segment_s},
+          {"nmse_by_equations", known(f.nmse_of_equations)},
+          {"held_out_nmse", f.nmse_of_motion},
+          {"residual_m", f.residual_m},
+          {"noise_m", f.noise_m},
+          {"followed", f.followed},
+          {"agrees_with_equations", f.agree},
+          {"refined", f.by_motion}};
+}
+
 const char* symmetry_of(const Signature& s) {
   if (s.odd_share > Signature::kMostly) return "odd";
   return s.odd_share < 1.0 - Signature::kMostly ? "even" : "mixed";
@@ -203,6 +217,18 @@ std::string floor_text(const Explanation& e) {
   return text;
 }
 
+std::string free_run_text(const FreeRunError& f) {
+  if (f.segments == 0) return "";
+  const char* kept =
+      f.by_motion ? "the law is refined by it" : "the equations are at least as certain, and stay";
+  return fmt::format(
+      "free run of {} x {:.3g} s by the force alone: off by {:.4g} m rms, held-out nmse {} ({:.4g} "
+      "by "
+      "the equations); the deflection's noise is {:.2g} m: {}\n",
+      f.segments, f.segment_s, f.residual_m, error_text(f.nmse_of_motion), f.nmse_of_equations,
+      f.noise_m, kept);
+}
+
 std::string validated_text(const Validated& v) {
   std::string text =
       fmt::format("never fitted: {}: rrse {:.3f} -> {:.3f}", v.record, v.rrse_before, v.rrse_after);
@@ -215,8 +241,11 @@ std::string validated_text(const Validated& v) {
   return text + "\n";
 }
 
-/// The final model is another one than the base: by effects, or by a rig's spring or mass alone.
-bool adds(const Explanation& e) { return !e.steps.empty() || e.final.terms != e.base.terms; }
+/// The final model is another one than the base: by effects, by a rig's spring or mass alone, or
+/// refined by its motion.
+bool adds(const Explanation& e) {
+  return !e.steps.empty() || e.final.terms != e.base.terms || e.free_run.by_motion;
+}
 
 /// Each step begins where the one before it ends, the first at the base, and the last ends at the
 /// final model.
@@ -266,6 +295,7 @@ std::string to_json(const Explanation& e) {
                     {"left_over_floor", known(e.left_over_floor)},
                     {"held_out", e.held_out},
                     {"filter_hz", known(e.filter_hz)},
+                    {"free_run", free_run_json(e.free_run)},
                     {"validation", list_of(e.validation, validated_json)},
                     {"faults", list_of(e.faults, fault_json)},
                     {"notes", e.notes},
@@ -284,7 +314,7 @@ std::string summarize(const Explanation& e) {
   text += model_text("base", e.base);
   for (const Step& step : e.steps) text += step_text(step);
   if (adds(e)) text += model_text("final", e.final);
-  text += floor_text(e);
+  text += floor_text(e) + free_run_text(e.free_run);
   if (e.signature.rms_n > 0.0) text += "what is left: " + describe(e.signature) + "\n";
   text += fmt::format("trust  {}\n", name_of(e.trust));
   for (const std::string& reason : e.trust_reasons) text += "       " + reason + "\n";

@@ -53,6 +53,19 @@ struct Validated {
   double same_rows_rrse{0.0};  ///< of the final model over the same samples
 };
 
+/// What a law leaves of the deflection when the force alone moves the mass.
+struct FreeRunError {
+  std::size_t segments{0};  ///< 0: it was not tried
+  double segment_s{0.0};
+  double nmse_of_equations{0.0};  ///< by the equations' coefficients
+  double nmse_of_motion{0.0};     ///< held out, by those that fit the motion
+  double residual_m{0.0};         ///< rms, of the motion's
+  double noise_m{0.0};            ///< of the deflection, rms
+  bool followed{false};           ///< no more is left than the deflection's noise
+  bool agree{false};              ///< both within their deviations
+  bool by_motion{false};          ///< the law has the motion's
+};
+
 /// What a diagnosis found, of a truck or a rig: explanation.json, terminal and page are made of it.
 struct Explanation {
   std::string verdict;  ///< "complete", "explained", "partly_explained", "unexplained"
@@ -69,6 +82,7 @@ struct Explanation {
   std::string held_out{"blocks"};         ///< or "records"
   double filter_hz{0.0};                  ///< corner of the filter before every error; 0: none
   std::string force;                      ///< what force is meant
+  FreeRunError free_run;                  ///< of a driven mass
   std::vector<Validated> validation;
   std::vector<FaultFinding> faults;
   std::vector<std::string> notes;  ///< how the records were read, a sentence each

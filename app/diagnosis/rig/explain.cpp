@@ -183,7 +183,7 @@ Explained look_for(Config config, const ExplainOptions& options) {
     config.model.base = base_of(out.records, config.model.inertia == "identify");
   const bool chosen = config.model.base != out.config.model.base;
   config.model.base_is_set = out.config.model.base_is_set;
-  out.explanation = search(config, out.records, is_base_declared(out.config.model));
+  out.explanation = search(config, out.records, is_base_declared(out.config.model), options.refine);
   if (chosen)
     out.explanation.notes.emplace_back(
         "Nobody declared a base: the record bears out what stands there. To fix it: [model] base");

@@ -13,6 +13,7 @@ struct ExplainOptions {
   std::vector<std::string> validation;
   std::string reference_column;  ///< of the validation records; empty: none
   bool skip_bad_lines{false};
+  bool refine{true};  ///< the law of a driven mass by its own motion
 };
 
 /// Explains records of a rig that measures motion and force, all with one model. Keeps the records

@@ -176,6 +176,7 @@ bool Explanation::is_complete() const noexcept {
   const double nmse = final.fit.held_out_nmse;
   const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
   if (!alike.empty() || !impossible.empty()) return false;
+  if (final.free_run.by_motion && final.free_run.followed) return true;
   if (nmse < kNegligible) return true;
   const double structured = std::max(signature.travel_share, signature.surface_share);
   const bool noise = final.floor_noise_share > kStructured;
@@ -204,6 +205,7 @@ app::Explanation found_in(const Explanation& e) {
   if (e.whole_records) out.held_out = "records";
   out.filter_hz = e.filter_hz;
   out.force = e.filter_hz > 0.0 ? "measured, behind the filter of the fit" : "measured";
+  out.free_run = e.final.free_run;
   out.validation.assign(e.validation.begin(), e.validation.end());
   out.notes = e.notes;
   out.faults = e.faults;

@@ -25,11 +25,12 @@ struct Model {
   std::vector<Parameter> parameters;
   /// Of `parameters`, those that are a coefficient: which one, by its place in the fit.
   std::vector<std::pair<std::size_t, Eigen::Index>> coefficients;
-  double ridge{0.0};              ///< of the fit
-  int friction{-1};               ///< the column that is the base's sign of v; -1: none
-  std::vector<Change> changes;    ///< of the friction; its columns follow the others
-  double skew_s{0.0};             ///< the force is late by this
-  Mode path;                      ///< that the force passes before it is measured
+  double ridge{0.0};            ///< of the fit
+  int friction{-1};             ///< the column that is the base's sign of v; -1: none
+  std::vector<Change> changes;  ///< of the friction; its columns follow the others
+  double skew_s{0.0};           ///< the force is late by this
+  Mode path;                    ///< that the force passes before it is measured
+  FreeRunError free_run;
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
   double floor_noise_share{0.0};  ///< of it, what the noise of the force makes
   /// What is left, over that.

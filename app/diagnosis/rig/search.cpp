@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "app/diagnosis/rig/by_motion.hpp"
 #include "app/diagnosis/rig/describe.hpp"
 #include "app/diagnosis/rig/joint.hpp"
 #include "app/diagnosis/rig/remainder.hpp"
@@ -158,7 +159,11 @@ Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
   for (const Chosen& c : s.chosen)
     out.changes.insert(out.changes.end(), c.changes.begin(), c.changes.end());
   out.ridge = ridge(s);
-  const Joint joint = fit_jointly(out, s.records, out.ridge, s.scale);
+  Joint joint = fit_jointly(out, s.records, out.ridge, s.scale);
+  const bool struck = std::any_of(s.chosen.begin(), s.chosen.end(), [](const Chosen& c) {
+    return c.step.effect == "impulsive_input";
+  });
+  if (s.refine && !struck) refine_by_motion(s.records, s.scale, out, joint);
   for (std::size_t i = 0; i < set.size(); ++i)
     s.library.columns[static_cast<std::size_t>(set[i])] = out.columns[i];
   evaluate_columns(s);
@@ -248,9 +253,10 @@ std::string impossible(const Model& model) {
 
 }  // namespace
 
-Explanation search(const Config& config, const std::vector<Series>& records,
-                   bool base_is_declared) {
+Explanation search(const Config& config, const std::vector<Series>& records, bool base_is_declared,
+                   bool refine) {
   State s{config, records};
+  s.refine = refine;
   s.library.base_is_declared = base_is_declared;
   Explanation out;
   for (const Series& r : records) out.records.push_back(r.record);

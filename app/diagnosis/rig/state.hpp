@@ -53,6 +53,7 @@ struct State {
   bool mass_added{false};
   bool base_takes_spring{false};  ///< it was added to the base, not with the first step
   bool base_takes_mass{false};
+  bool refine{true};  ///< the final law by its own motion
   std::vector<std::string> notes;
   std::vector<JudgedCandidate> rejected;  ///< of the newest round
   std::vector<Candidate> losers;          ///< the same, after the best

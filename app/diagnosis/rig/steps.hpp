@@ -73,6 +73,6 @@ void reconsider_base(State& s);
 /// Looks for what a rig's base model lacks, step by step, and says what was found. A base that
 /// nobody declared is looked at once more in the end.
 [[nodiscard]] Explanation search(const Config& config, const std::vector<Series>& records,
-                                 bool base_is_declared);
+                                 bool base_is_declared, bool refine);
 
 }  // namespace dampline::app::rig

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // By what a rig's diagnosis decides. Origins: firmware_core/docs/constants.md.
 #pragma once
+#include <array>
 #include <cstddef>
 
 namespace dampline::app::rig {
@@ -80,5 +81,15 @@ inline constexpr int kJointRounds = 8;
 inline constexpr double kArrived = 0.05;     // of a deviation: a place no longer moves
 inline constexpr double kLongestMove = 0.2;  // of a place at once
 inline constexpr double kHalvesApart = 3.0;  // deviations: halves differ, and the deviation widens
+
+// The law by its own motion.
+inline constexpr double kFollowed = 1.1;  // times the deflection's noise: nothing more is left
+inline constexpr double kExact = 1e-8;    // nmse of the motion: the same
+inline constexpr std::array kSpeeds{1.0, 0.5, 2.0};  // of a friction that falls: starts
+inline constexpr double kOtherForm = 0.999;     // of the squares left: another form of an effect
+inline constexpr double kPlainer = 1.001;       // the same, for one with a figure less
+inline constexpr double kMovesFarBetter = 0.1;  // the same, where more than noise is left
+inline constexpr double kMovesBetter = 0.8;  // of the squares left: it agrees, and is better still
+inline constexpr double kAgree = 3.0;  // deviations of the difference between it and the equations
 
 }  // namespace dampline::app::rig

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/rig/by_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "app/diagnosis/rig/thresholds.hpp"
+#include "app/law/shooting.hpp"
+
+namespace dampline::app::rig {
+namespace {
+
+bool is_inertia(Kind kind) { return kind == Kind::kInertia || kind == Kind::kAcceleration; }
+
+/// Friction whose way over which it builds up is shorter than can be seen.
+bool is_sharp(const Regressor& c, const Scale& scale) {
+  switch (c.kind) {
+    case Kind::kSign:
+      return !is_smooth(c, scale);
+    case Kind::kStop:
+      return !is_memory_travel(c.a, scale);
+    case Kind::kFading:
+    case Kind::kFadingSquare:
+    case Kind::kFadingSlowly:
+    case Kind::kProgressive:
+    case Kind::kProgressiveAbsolute:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<law::Drive> drives_of(const std::vector<Series>& records) {
+  std::vector<law::Drive> out;
+  for (const Series& s : records) {
+    Eigen::VectorXd counts;
+    if (s.left_out.size() == s.size()) counts = (s.left_out.array() == 0.0).cast<double>();
+    out.push_back({law::Input{s.force_n, s.interval_s}, s.deflection_m, s.velocity_mps, counts});
+  }
+  return out;
+}
+
+/// The model with other coefficients and places.
+Model with(Model model, const Joint& joint, const Eigen::VectorXd& unknowns) {
+  const auto n = static_cast<Eigen::Index>(joint.coefficients);
+  model.fit.theta = unknowns.head(n);
+  for (std::size_t k = 0; k < joint.places.size(); ++k)
+    for (const std::size_t c : joint.places[k].columns)
+      (joint.places[k].of == Place::Of::kA ? model.columns[c].a : model.columns[c].b) =
+          unknowns[n + static_cast<Eigen::Index>(k)];
+  return model;
+}
+
+Eigen::VectorXd unknowns_of(const Model& model, const Joint& joint) {
+  const auto n = static_cast<Eigen::Index>(joint.coefficients);
+  Eigen::VectorXd out{n + static_cast<Eigen::Index>(joint.places.size())};
+  out.head(n) = model.fit.theta;
+  for (std::size_t k = 0; k < joint.places.size(); ++k) {
+    const Regressor& c = model.columns[joint.places[k].columns[0]];
+    out[n + static_cast<Eigen::Index>(k)] = joint.places[k].of == Place::Of::kA ? c.a : c.b;
+  }
+  return out;
+}
+
+/// Whether all figures of both lie within kAgree deviations of the difference.
+bool agree(const Eigen::VectorXd& rows, const Eigen::MatrixXd& of_rows, const law::Shot& motion) {
+  const Eigen::ArrayXd variance = of_rows.diagonal().array() + motion.covariance.diagonal().array();
+  return ((rows - motion.unknowns).array().square() <= kAgree * kAgree * variance).all();
+}
+
+double log_size(const Eigen::MatrixXd& covariance) {
+  return covariance.diagonal().array().max(1e-300).log().sum();
+}
+
+law::LawOf law_at(const Model& model, const Joint& joint, const Scale& scale) {
+  std::vector<bool> sharp;
+  for (const Regressor& c : model.columns) sharp.push_back(is_sharp(c, scale));
+  return [&model, &joint, sharp](const Eigen::VectorXd& unknowns) {
+    const Model there = with(model, joint, unknowns);
+    law::Law out;
+    for (std::size_t i = 0; i < there.columns.size(); ++i) {
+      const double value = unknowns[static_cast<Eigen::Index>(i)];
+      if (is_inertia(there.columns[i].kind))
+        out.mass_kg += value;
+      else
+        out.terms.push_back({there.columns[i], value, sharp[i]});
+    }
+    return out;
+  };
+}
+
+/// A model, and where its own motion puts it.
+struct Moved {
+  Model model;  ///< as the equations have it
+  Joint joint;
+  law::Shot shot;
+};
+
+Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start, const Scale& scale,
+           const std::vector<law::Drive>& drives) {
+  Moved out{model, joint, {}};
+  const Eigen::VectorXd rows = unknowns_of(model, joint);
+  Eigen::VectorXd scales{rows.size()};
+  std::vector<bool> positive;
+  for (Eigen::Index i = 0; i < rows.size(); ++i) {
+    scales[i] =
+        std::max({std::abs(rows[i]), std::sqrt(std::max(joint.covariance(i, i), 0.0)), 1e-12});
+    const auto at = static_cast<std::size_t>(i);
+    if (at < joint.coefficients) {
+      positive.push_back(is_inertia(model.columns[at].kind));
+      continue;
+    }
+    const Place& place = joint.places[at - joint.coefficients];
+    const bool shape =
+        place.of == Place::Of::kB && model.columns[place.columns[0]].kind == Kind::kBoucWen;
+    positive.push_back(!shape);
+    if (shape) scales[i] = 1.0;
+  }
+  out.shot = law::shoot(law_at(model, joint, scale), start, scales, positive, drives);
+  return out;
+}
+
+bool is_fading(Kind kind) {
+  return kind == Kind::kFading || kind == Kind::kFadingSquare || kind == Kind::kFadingSlowly;
+}
+
+/// No more is left than the deflection's noise.
+bool follows(const law::Shot& shot, double noise_m) {
+  return shot.residual_m < kFollowed * noise_m || shot.nmse < kExact;
+}
+
+/// Where it has come, the speeds at which friction falls that many times as high.
+Eigen::VectorXd with_speeds(const Moved& moved, double times) {
+  Eigen::VectorXd out = moved.shot.unknowns;
+  for (std::size_t k = 0; k < moved.joint.places.size(); ++k) {
+    const Place& place = moved.joint.places[k];
+    if (place.of == Place::Of::kB && is_fading(moved.model.columns[place.columns[0]].kind))
+      out[static_cast<Eigen::Index>(moved.joint.coefficients + k)] *= times;
+  }
+  return out;
+}
+
+std::vector<Kind> kinds_of(const Model& model) {
+  std::vector<Kind> out;
+  for (const Regressor& c : model.columns) out.push_back(c.kind);
+  return out;
+}
+
+struct Form {
+  Model model;
+  bool plainer{false};  ///< than what the equations have
+};
+
+/// The model in other forms that the equations hardly tell apart where the motion is noisy:
+/// friction without a width of its own, the other ways in which friction falls with speed, a memory
+/// that yields smoothly.
+std::vector<Form> other_forms(const Model& model, const Scale& scale) {
+  std::vector<Form> starts{{model}};
+  for (std::size_t i = 0; i < model.columns.size(); ++i) {
+    if (!is_smooth(model.columns[i], scale)) continue;
+    starts.push_back({model, true});
+    starts.back().model.columns[i].a = scale.sign_mps;
+  }
+  std::vector<Form> out{starts.begin() + 1, starts.end()};
+  for (const Form& start : starts)
+    for (std::size_t i = 0; i < model.columns.size(); ++i) {
+      const Regressor& c = start.model.columns[i];
+      for (const Kind shape : {Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly}) {
+        if (!is_fading(c.kind) || c.kind == shape) continue;
+        out.push_back(start);
+        out.back().model.columns[i].kind = shape;
+      }
+      if (c.kind != Kind::kStop || !is_memory_travel(c.a, scale)) continue;
+      out.push_back(start);
+      out.back().model.columns[i] = {Kind::kBoucWen, 0.5 * c.a, 0.0};
+    }
+  return out;
+}
+
+/// Which of both is kept.
+void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& scale,
+           double noise_m) {
+  const Eigen::VectorXd rows = unknowns_of(moved.model, moved.joint);
+  const law::Shot& motion = moved.shot;
+  const law::Shot before =
+      law::follow(law_at(moved.model, moved.joint, scale), rows, drives, motion.segment_s);
+  FreeRunError& out = moved.model.free_run;
+  out.segments = motion.segments;
+  out.segment_s = motion.segment_s;
+  out.nmse_of_equations = before.ok ? before.nmse : std::numeric_limits<double>::infinity();
+  out.nmse_of_motion = motion.held_out_nmse;
+  out.residual_m = motion.residual_m;
+  out.noise_m = noise_m;
+  out.followed = follows(motion, noise_m);
+  out.agree = agree(rows, moved.joint.covariance, motion);
+  // A law that misses more than noise is held to its force, unless its motion is another one.
+  const double enough = out.followed ? kMovesBetter : kMovesFarBetter;
+  if (out.nmse_of_motion < enough * out.nmse_of_equations)
+    out.by_motion = true;
+  else if (out.agree)
+    out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
+}
+
+}  // namespace
+
+std::optional<law::Law> law_of(const Model& model, const Scale& scale) {
+  if (model.skew_s != 0.0 || model.path.hz > 0.0 || !model.changes.empty() || model.ridge > 0.0)
+    return std::nullopt;
+  law::Law out;
+  for (std::size_t i = 0; i < model.columns.size(); ++i) {
+    const double value = model.fit.theta[static_cast<Eigen::Index>(i)];
+    if (is_inertia(model.columns[i].kind))
+      out.mass_kg += value;
+    else
+      out.terms.push_back({model.columns[i], value, is_sharp(model.columns[i], scale)});
+  }
+  if (!law::FreeRun::can(out)) return std::nullopt;
+  return out;
+}
+
+void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& model,
+                      Joint& joint) {
+  const bool gaps =
+      std::any_of(records.begin(), records.end(), [](const Series& s) { return s.has_gap; });
+  if (!joint.ok || gaps || !law_of(model, scale)) return;
+  const std::vector<law::Drive> drives = drives_of(records);
+  double noise_m = 0.0;
+  for (const Series& s : records) noise_m = std::max(noise_m, s.noise_m);
+  Moved best = move(model, joint, unknowns_of(model, joint), scale, drives);
+  if (!best.shot.ok) return;
+  std::vector<Moved> forms{best};
+  const auto take = [&](const Moved& other, double enough) {
+    if (other.shot.ok && other.shot.held_out_nmse < enough * best.shot.held_out_nmse) best = other;
+  };
+  for (const Form& form : other_forms(model, scale)) {
+    Model there = form.model;
+    const Joint by_rows = fit_jointly(there, records, model.ridge, scale);
+    if (!by_rows.ok) continue;
+    forms.push_back(move(there, by_rows, unknowns_of(there, by_rows), scale, drives));
+    take(forms.back(), form.plainer ? kPlainer : kOtherForm);
+  }
+  const auto is_followed = [&] { return follows(best.shot, noise_m); };
+  // Sticking makes many minima: from where the best form has come, and with other speeds.
+  const Moved from = best;
+  for (const Moved& form : forms)
+    for (const double times : kSpeeds) {
+      const bool same = form.model.columns.size() == from.model.columns.size() &&
+                        kinds_of(form.model) == kinds_of(from.model);
+      if (is_followed() || form.joint.size() != from.joint.size() || same != (times != 1.0))
+        continue;
+      take(move(form.model, form.joint, with_speeds(from, times), scale, drives), kOtherForm);
+    }
+  judge(best, drives, scale, noise_m);
+  if (best.model.free_run.by_motion) {
+    const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);
+    best.model = with(std::move(best.model), best.joint, best.shot.unknowns);
+    best.joint.covariance = best.shot.covariance;
+    // It may have ended beside the least: as uncertain as both ways are apart.
+    if (!best.model.free_run.followed) best.joint.covariance += apart * apart.transpose();
+    best.joint.half_difference.setZero();
+  }
+  model = std::move(best.model);
+  joint = std::move(best.joint);
+}
+
+}  // namespace dampline::app::rig

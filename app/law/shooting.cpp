@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: MIT
+#include "app/law/shooting.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace dampline::app::law {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kFirstPeriods = 4.0;  // of the motion, in a segment
+constexpr Index kFewestSamples = 50;
+constexpr double kLonger = 3.0;    // times, from one length of segments to the next
+constexpr double kMuchMore = 4.0;  // times the squares left: longer segments are not followed
+constexpr int kRounds = 15;
+constexpr int kStateRounds = 6;
+constexpr double kArrived = 0.01;  // of a deviation
+constexpr double kNearly = 0.3;    // where longer segments follow
+constexpr double kLittle = 1e-4;   // of the squares: a step that gains no more is the last
+constexpr double kFar = 30.0;      // times the motion's range: it ran away
+// Of an unknown's scale: where sticking makes the error ragged, wider differences see its course.
+constexpr std::array kDifferences{1e-6, 1e-4, 3e-3};
+constexpr double kMostMove = 0.5;  // of an unknown that stays above 0
+constexpr std::size_t kFolds = 5;
+constexpr Index kFewestBlocks = 20;
+
+struct Segment {
+  std::size_t drive;
+  Index begin;
+  Index end;  ///< one past the last sample
+  State start;
+  bool is_first;  ///< of its record: what it remembers is unknown too
+};
+
+/// The residual of a segment and its slopes, the samples that do not count at 0.
+struct Linear {
+  VectorXd left;
+  MatrixXd by_unknowns;
+  MatrixXd by_state;
+};
+
+struct Sums {
+  MatrixXd products;
+  VectorXd gradient;
+  double squares{0.0};
+};
+
+class Shooting {
+ public:
+  Shooting(const LawOf& law_of, VectorXd scale, std::vector<bool> positive,
+           const std::vector<Drive>& drives)
+      : law_of_{law_of}, scale_{std::move(scale)}, positive_{std::move(positive)}, drives_{drives} {
+    double squares = 0.0;
+    double speeds = 0.0;
+    for (const Drive& d : drives) {
+      const double mean = d.deflection_m.mean();
+      squares += (d.deflection_m.array() - mean).square().sum();
+      speeds += d.velocity_mps.squaredNorm();
+      range_m_ = std::max(range_m_, d.deflection_m.maxCoeff() - d.deflection_m.minCoeff());
+      samples_ += d.deflection_m.size();
+      for (Index i = 0; i < d.deflection_m.size(); ++i)
+        if (counts(d, i)) variance_m2_ += std::pow(d.deflection_m[i] - mean, 2);
+    }
+    period_s_ = speeds > 0.0 ? 2.0 * std::numbers::pi * std::sqrt(squares / speeds) : 1.0;
+  }
+
+  Shot fit(VectorXd unknowns);
+  Shot follow(const VectorXd& unknowns, double segment_s);
+
+ private:
+  static bool counts(const Drive& d, Index i) { return d.counts.size() == 0 || d.counts[i] > 0.0; }
+  [[nodiscard]] double interval_s() const { return drives_.front().input.interval_s(); }
+
+  void cut(Index samples);
+  [[nodiscard]] bool run(const FreeRun& law, const Segment& s, State& state, VectorXd& out) const;
+  [[nodiscard]] double squares_of(const VectorXd& unknowns, std::vector<Segment>& segments) const;
+  [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
+                               std::vector<Linear>& out);
+  [[nodiscard]] Sums sum(const std::vector<Linear>& parts) const;
+  [[nodiscard]] std::vector<Segment> moved(const std::vector<Linear>& parts,
+                                           const VectorXd& by) const;
+  bool settle(const VectorXd& unknowns);
+  bool descend(VectorXd& unknowns, double enough, double& squares);
+  Shot judge(const VectorXd& unknowns, double squares);
+
+  const LawOf& law_of_;
+  VectorXd scale_;
+  std::vector<bool> positive_;
+  const std::vector<Drive>& drives_;
+  std::vector<Segment> segments_;
+  Index length_{0};
+  Index samples_{0};
+  double difference_{kDifferences[0]};
+  double variance_m2_{0.0};  ///< summed
+  double range_m_{0.0};
+  double period_s_{1.0};
+};
+
+/// Segments of so many samples; where there were some, their states stay.
+void Shooting::cut(Index samples) {
+  const std::vector<Segment> before = std::move(segments_);
+  segments_.clear();
+  length_ = samples;
+  for (std::size_t d = 0; d < drives_.size(); ++d) {
+    const Index size = drives_[d].deflection_m.size();
+    const Index count = std::max<Index>(1, size / samples);
+    for (Index k = 0; k < count; ++k) {
+      Segment s{d, k * samples, k + 1 == count ? size : (k + 1) * samples, {}, k == 0};
+      const auto same = std::find_if(before.begin(), before.end(), [&](const Segment& other) {
+        return other.drive == d && other.begin == s.begin;
+      });
+      if (same != before.end()) {
+        s.start = same->start;
+      } else {
+        s.start.deflection_m = drives_[d].deflection_m[s.begin];
+        s.start.velocity_mps = drives_[d].velocity_mps[s.begin];
+      }
+      segments_.push_back(s);
+    }
+  }
+}
+
+/// The deflection over a segment from `state`, which ends where the segment does; false where it
+/// runs away.
+bool Shooting::run(const FreeRun& law, const Segment& s, State& state, VectorXd& out) const {
+  out.resize(s.end - s.begin);
+  const double farthest_m = kFar * range_m_;
+  for (Index i = s.begin; i < s.end; ++i) {
+    out[i - s.begin] = state.deflection_m;
+    if (!(std::abs(state.deflection_m) < farthest_m)) return false;
+    if (i + 1 < drives_[s.drive].input.size()) law.advance(i, state);
+  }
+  return true;
+}
+
+VectorXd left_of(const Drive& d, Index begin, const VectorXd& deflection_m) {
+  VectorXd out = deflection_m - d.deflection_m.segment(begin, deflection_m.size());
+  if (d.counts.size() > 0)
+    out.array() *= (d.counts.segment(begin, deflection_m.size()).array() > 0.0).cast<double>();
+  return out;
+}
+
+/// What is left in all; hands on what the terms remember.
+double Shooting::squares_of(const VectorXd& unknowns, std::vector<Segment>& segments) const {
+  const Law law = law_of_(unknowns);
+  double out = 0.0;
+  State end;
+  VectorXd path;
+  for (Segment& s : segments) {
+    const Drive& d = drives_[s.drive];
+    if (!s.is_first) {
+      s.start.memory_m = end.memory_m;
+      s.start.slip_m = end.slip_m;
+    }
+    end = s.start;
+    if (!run(FreeRun{law, d.input}, s, end, path)) return std::numeric_limits<double>::infinity();
+    out += left_of(d, s.begin, path).squaredNorm();
+  }
+  return out;
+}
+
+/// A state with its k-th figure moved: deflection, velocity, then what is remembered.
+State moved_state(State s, Index k, double by) {
+  if (k == 0)
+    s.deflection_m += by;
+  else if (k == 1)
+    s.velocity_mps += by;
+  else
+    s.memory_m[static_cast<std::size_t>(k - 2)] += by;
+  return s;
+}
+
+bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
+                         std::vector<Linear>& out) {
+  const Index p = with_unknowns ? unknowns.size() : 0;
+  const Law law = law_of_(unknowns);
+  const std::vector<Regressor> memories = memories_of(law);
+  std::vector<Law> beside;
+  for (Index j = 0; j < p; ++j) {
+    VectorXd there = unknowns;
+    there[j] += difference_ * scale_[j];
+    beside.push_back(law_of_(there));
+  }
+  out.clear();
+  State end;
+  VectorXd path;
+  VectorXd other;
+  for (Segment& s : segments_) {
+    const Drive& d = drives_[s.drive];
+    const FreeRun base{law, d.input, refinement};
+    if (!s.is_first) {
+      s.start.memory_m = end.memory_m;
+      s.start.slip_m = end.slip_m;
+    }
+    end = s.start;
+    if (!run(base, s, end, path)) return false;
+    Linear& l = out.emplace_back();
+    l.left = left_of(d, s.begin, path);
+    const auto slope = [&](const FreeRun& law_there, State from, double step, auto column) {
+      if (!run(law_there, s, from, other)) return false;
+      column = (left_of(d, s.begin, other) - l.left) / step;
+      return true;
+    };
+    l.by_unknowns.resize(path.size(), p);
+    for (Index j = 0; j < p; ++j)
+      if (!slope(FreeRun{beside[static_cast<std::size_t>(j)], d.input, refinement}, s.start,
+                 difference_ * scale_[j], l.by_unknowns.col(j)))
+        return false;
+    const Index figures = 2 + (s.is_first ? static_cast<Index>(memories.size()) : 0);
+    l.by_state.resize(path.size(), figures);
+    for (Index k = 0; k < figures; ++k) {
+      double step = kDifferences[0] * range_m_;
+      if (k == 1) step *= 2.0 * std::numbers::pi / period_s_;
+      if (k >= 2) {
+        const auto m = static_cast<std::size_t>(k - 2);
+        step = kDifferences[0] * memories[m].a;
+        if (s.start.memory_m[m] > 0.0) step = -step;
+      }
+      if (!slope(base, moved_state(s.start, k, step), step, l.by_state.col(k))) return false;
+    }
+  }
+  return true;
+}
+
+/// What is left when each segment's state has taken its part.
+Linear beside_state(const Linear& l) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr{l.by_state};
+  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(l.by_state.rows(), qr.rank());
+  Linear out;
+  out.left = l.left - q * (q.transpose() * l.left);
+  out.by_unknowns = l.by_unknowns - q * (q.transpose() * l.by_unknowns);
+  return out;
+}
+
+Sums Shooting::sum(const std::vector<Linear>& parts) const {
+  const Index p = parts.front().by_unknowns.cols();
+  Sums out{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
+  for (const Linear& each : parts) {
+    const Linear l = beside_state(each);
+    out.products += l.by_unknowns.transpose() * l.by_unknowns;
+    out.gradient += l.by_unknowns.transpose() * l.left;
+    out.squares += l.left.squaredNorm();
+  }
+  return out;
+}
+
+/// The segments with the states that a step of the unknowns asks for.
+std::vector<Segment> Shooting::moved(const std::vector<Linear>& parts, const VectorXd& by) const {
+  std::vector<Segment> out = segments_;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    VectorXd left = parts[i].left;
+    if (by.size() > 0) left += parts[i].by_unknowns * by;
+    const VectorXd step = parts[i].by_state.colPivHouseholderQr().solve(-left);
+    for (Index k = 0; k < step.size(); ++k) out[i].start = moved_state(out[i].start, k, step[k]);
+  }
+  return out;
+}
+
+/// Fits the states alone.
+bool Shooting::settle(const VectorXd& unknowns) {
+  double squares = squares_of(unknowns, segments_);
+  std::vector<Linear> parts;
+  for (int i = 0; i < kStateRounds; ++i) {
+    if (!linearise(unknowns, 1, false, parts)) return false;
+    std::vector<Segment> there = moved(parts, {});
+    const double then = squares_of(unknowns, there);
+    if (!(then < squares)) break;
+    const bool enough = then > (1.0 - 1e-4) * squares;
+    segments_ = std::move(there);
+    squares = then;
+    if (enough) break;
+  }
+  return std::isfinite(squares);
+}
+
+/// Levenberg and Marquardt over the unknowns; false where no step could be tried.
+bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
+  squares = squares_of(unknowns, segments_);
+  double damping = 1e-3;
+  std::size_t width = 0;
+  std::vector<Linear> parts;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!linearise(unknowns, 1, true, parts)) return false;
+    const Sums sums = sum(parts);
+    const VectorXd diagonal = sums.products.diagonal();
+    bool better = false;
+    bool arrived = false;
+    for (int tries = 0; tries < 8 && !better; ++tries, damping *= 10.0) {
+      MatrixXd damped = sums.products;
+      damped.diagonal() += damping * diagonal;
+      const Eigen::LDLT<MatrixXd> factor{damped};
+      VectorXd by = -factor.solve(sums.gradient);
+      for (Index j = 0; j < by.size(); ++j)
+        if (positive_[static_cast<std::size_t>(j)])
+          by[j] = std::clamp(by[j], -kMostMove * unknowns[j], kMostMove * unknowns[j]);
+      std::vector<Segment> there = moved(parts, by);
+      const double then = squares_of(unknowns + by, there);
+      if (!(then < squares)) continue;
+      const double variance = sums.squares / static_cast<double>(samples_);
+      const MatrixXd inverse = factor.solve(MatrixXd::Identity(by.size(), by.size()));
+      arrived = (by.array().abs() < enough * (variance * inverse.diagonal().array().abs()).sqrt() +
+                                        1e-9 * scale_.array())
+                    .all();
+      arrived = arrived || (damping < 0.1 && then > (1.0 - kLittle) * squares);
+      unknowns += by;
+      segments_ = std::move(there);
+      squares = then;
+      better = true;
+      damping *= 0.03;
+    }
+    if (arrived) break;
+    if (!better && ++width == kDifferences.size()) break;
+    if (!better) damping = 1e-3;
+    difference_ = kDifferences[width];
+    damping = std::clamp(damping, 1e-9, 1.0);
+  }
+  difference_ = kDifferences[0];
+  return true;
+}
+
+Shot Shooting::judge(const VectorXd& unknowns, double squares) {
+  Shot out;
+  std::vector<Linear> parts;
+  if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return out;
+  const Index p = unknowns.size();
+  const Index block = std::max<Index>(
+      1, std::min(static_cast<Index>(2.0 * period_s_ / interval_s()), samples_ / kFewestBlocks));
+  std::vector<Sums> blocks;
+  std::vector<Linear> clean;
+  for (const Linear& each : parts) {
+    const Linear& l = clean.emplace_back(beside_state(each));
+    for (Index from = 0; from < l.left.size(); from += block) {
+      const Index n = std::min(block, l.left.size() - from);
+      const auto slopes = l.by_unknowns.middleRows(from, n);
+      blocks.push_back({slopes.transpose() * slopes, slopes.transpose() * l.left.segment(from, n),
+                        l.left.segment(from, n).squaredNorm()});
+    }
+  }
+  Sums all{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
+  MatrixXd scatter = MatrixXd::Zero(p, p);
+  for (const Sums& b : blocks) {
+    all.products += b.products;
+    all.gradient += b.gradient;
+    all.squares += b.squares;
+    scatter += b.gradient * b.gradient.transpose();
+  }
+  const VectorXd size = all.products.diagonal().cwiseSqrt().cwiseMax(1e-300);
+  const MatrixXd scaled =
+      size.cwiseInverse().asDiagonal() * all.products * size.cwiseInverse().asDiagonal();
+  const Eigen::LDLT<MatrixXd> factor{scaled};
+  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-14)) return out;
+  const auto solve = [&](const MatrixXd& right) -> MatrixXd {
+    return size.cwiseInverse().asDiagonal() *
+           factor.solve(size.cwiseInverse().asDiagonal() * right);
+  };
+  const MatrixXd inverse = solve(MatrixXd::Identity(p, p));
+  const auto count = static_cast<double>(blocks.size());
+  const double freedom =
+      static_cast<double>(samples_ - p) - 2.0 * static_cast<double>(segments_.size());
+  out.covariance =
+      count / std::max(count - static_cast<double>(p), 1.0) * inverse * scatter * inverse;
+  const MatrixXd white = all.squares / std::max(freedom, 1.0) * inverse;
+  VectorXd widen =
+      (white.diagonal().array() / out.covariance.diagonal().array().max(1e-300)).sqrt().max(1.0);
+  out.covariance = widen.asDiagonal() * out.covariance * widen.asDiagonal();
+  // Steps twice as fine would go this much farther.
+  std::vector<Linear> fine;
+  if (linearise(unknowns, 2, false, fine)) {
+    VectorXd gradient = VectorXd::Zero(p);
+    for (std::size_t i = 0; i < fine.size(); ++i)
+      gradient += clean[i].by_unknowns.transpose() * (fine[i].left - parts[i].left);
+    const VectorXd by = solve(gradient);
+    out.covariance += by * by.transpose();
+  }
+  double held_out = 0.0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    MatrixXd products = all.products;
+    VectorXd gradient = all.gradient;
+    for (std::size_t b = fold; b < blocks.size(); b += kFolds) {
+      products -= blocks[b].products;
+      gradient -= blocks[b].gradient;
+    }
+    const VectorXd by = -products.ldlt().solve(gradient);
+    for (std::size_t b = fold; b < blocks.size(); b += kFolds)
+      held_out +=
+          blocks[b].squares + 2.0 * by.dot(blocks[b].gradient) + by.dot(blocks[b].products * by);
+  }
+  out.ok = true;
+  out.unknowns = unknowns;
+  out.nmse = squares / variance_m2_;
+  out.held_out_nmse = held_out / variance_m2_;
+  out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
+  out.segment_s = static_cast<double>(length_) * interval_s();
+  out.segments = segments_.size();
+  return out;
+}
+
+Shot Shooting::fit(VectorXd unknowns) {
+  Index longest = 0;
+  for (const Drive& d : drives_) longest = std::max(longest, d.deflection_m.size());
+  auto length =
+      std::max(kFewestSamples, static_cast<Index>(kFirstPeriods * period_s_ / interval_s()));
+  length = std::min(length, longest);
+  cut(length);
+  if (!settle(unknowns)) return {};
+  double squares = 0.0;
+  if (!descend(unknowns, length < longest ? kNearly : kArrived, squares)) return {};
+  while (length < longest) {
+    const VectorXd before = unknowns;
+    const std::vector<Segment> segments = segments_;
+    const Index shorter = length;
+    length = std::min(longest, static_cast<Index>(kLonger * static_cast<double>(length)));
+    cut(length);
+    double then = 0.0;
+    if (settle(unknowns) && descend(unknowns, length < longest ? kNearly : kArrived, then) &&
+        then < kMuchMore * squares) {
+      squares = then;
+      continue;
+    }
+    unknowns = before;
+    segments_ = segments;
+    length_ = shorter;
+    break;
+  }
+  return judge(unknowns, squares);
+}
+
+Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
+  Shot out;
+  cut(static_cast<Index>(std::lround(segment_s / interval_s())));
+  if (!settle(unknowns)) return out;
+  const double squares = squares_of(unknowns, segments_);
+  out.ok = std::isfinite(squares);
+  out.unknowns = unknowns;
+  out.nmse = out.held_out_nmse = squares / variance_m2_;
+  out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
+  out.segment_s = segment_s;
+  out.segments = segments_.size();
+  return out;
+}
+
+}  // namespace
+
+Shot shoot(const LawOf& law_of, const VectorXd& start, const VectorXd& scale,
+           const std::vector<bool>& positive, const std::vector<Drive>& drives) {
+  return Shooting{law_of, scale, positive, drives}.fit(start);
+}
+
+Shot follow(const LawOf& law_of, const VectorXd& unknowns, const std::vector<Drive>& drives,
+            double segment_s) {
+  return Shooting{law_of, VectorXd::Ones(unknowns.size()), {}, drives}.follow(unknowns, segment_s);
+}
+
+}  // namespace dampline::app::law
