@@ -351,8 +351,8 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
       "uncertainty");
   const auto options = std::make_shared<IdentifyFlags>();
   verb->add_option("SOURCE", options->source.path,
-                   "an interface (can0, vcan0), a file of frames (candump, ASC, BLF, TRC) or rows "
-                   "(CSV, NumPy), a black box, or - for such a file on standard input")
+                   "an interface (can0, vcan0), a file of frames (candump, ASC, BLF, TRC, MDF4) or "
+                   "rows (CSV, NumPy, MAT, HDF5, MDF4), a black box, or - for such a file on standard input")
       ->required();
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "

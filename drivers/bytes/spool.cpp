@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -10,7 +11,9 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <span>
+#include <utility>
 
 #include "drivers/bytes/byte_stream.hpp"
 
@@ -25,13 +28,7 @@ bool is_compressed(const std::string& path) {
          Compression::kNone;
 }
 
-}  // namespace
-
-Outcome<std::string> spooled(const std::string& path) {
-  struct stat status {};
-  if (path != "-" && ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
-      !is_compressed(path))
-    return path;
+Outcome<std::string> copied(const std::string& path) {
   auto opened = ByteStream::open(path);
   if (!opened) return opened.failure();
   ByteStream& stream = opened.value();
@@ -53,6 +50,41 @@ Outcome<std::string> spooled(const std::string& path) {
   }
   if (std::fflush(file) != 0) return cannot();
   return fmt::format("/proc/self/fd/{}", ::fileno(file));
+}
+
+struct stat status_of(const std::string& path) {
+  struct stat status {};
+  if (path == "-")
+    static_cast<void>(::fstat(STDIN_FILENO, &status));
+  else
+    static_cast<void>(::stat(path.c_str(), &status));
+  return status;
+}
+
+/// Of a pipe, which gives its bytes once.
+std::string& copy_of(const struct stat& pipe) {
+  static std::map<std::pair<dev_t, ino_t>, std::string> copies;
+  return copies[{pipe.st_dev, pipe.st_ino}];
+}
+
+}  // namespace
+
+Outcome<std::string> spooled(const std::string& path) {
+  const struct stat status = status_of(path);
+  if (S_ISREG(status.st_mode))
+    return path != "-" && !is_compressed(path) ? Outcome<std::string>{path} : copied(path);
+  std::string& copy = copy_of(status);
+  if (!copy.empty()) return copy;
+  auto made = copied(path);
+  if (made) copy = made.value();
+  return made;
+}
+
+std::string spooled_before(const std::string& path) {
+  const struct stat status = status_of(path);
+  if (S_ISREG(status.st_mode) || status.st_ino == 0) return path;
+  const std::string& copy = copy_of(status);
+  return copy.empty() ? path : copy;
 }
 
 }  // namespace dampline::drivers

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "drivers/bytes/byte_stream.hpp"
+#include "drivers/bytes/spool.hpp"
+#include "drivers/mdf/reader.hpp"
 
 namespace dampline::drivers {
 namespace {
@@ -159,7 +161,7 @@ RecordFormat format_of(std::string_view head) noexcept {
 
 Outcome<std::string> read_head(const std::string& path) {
   constexpr std::chrono::milliseconds kPause{300};
-  Outcome<ByteStream> opened = ByteStream::open(path);
+  Outcome<ByteStream> opened = ByteStream::open(spooled_before(path));
   if (!opened) return opened.failure();
   ByteStream& stream = opened.value();
   std::string head(kHead, '\0');
@@ -185,7 +187,9 @@ Outcome<std::string> read_head(const std::string& path) {
 Outcome<RecordFormat> detect_format(const std::string& path) {
   const Outcome<std::string> head = read_head(path);
   if (!head) return head.failure();
-  return format_of(head.value());
+  const RecordFormat format = format_of(head.value());
+  return format == RecordFormat::kMdf4 && !mdf_holds_frames(path) ? RecordFormat::kMdf4Rows
+                                                                  : format;
 }
 
 bool holds_frames(RecordFormat format) noexcept {
@@ -193,7 +197,7 @@ bool holds_frames(RecordFormat format) noexcept {
 }
 
 bool holds_rows(RecordFormat format) noexcept {
-  return format >= RecordFormat::kTable && format <= RecordFormat::kHdf5;
+  return format >= RecordFormat::kTable && format <= RecordFormat::kMdf4Rows;
 }
 
 std::string_view name_of(RecordFormat format) noexcept {
@@ -213,7 +217,7 @@ std::string_view name_of(RecordFormat format) noexcept {
     case RecordFormat::kBlf:
       return "a Vector BLF file";
     case RecordFormat::kMdf4:
-      return "an MDF4 file";
+      return "an MDF4 file of a CAN bus";
     case RecordFormat::kTable:
       return "text in columns";
     case RecordFormat::kNpy:
@@ -224,6 +228,8 @@ std::string_view name_of(RecordFormat format) noexcept {
       return "a MAT file";
     case RecordFormat::kHdf5:
       return "an HDF5 file";
+    case RecordFormat::kMdf4Rows:
+      return "an MDF4 file of measured signals";
     case RecordFormat::kMdf3:
       return "an MDF file of version 3";
     case RecordFormat::kOtherZip:

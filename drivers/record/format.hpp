@@ -18,13 +18,14 @@ enum class RecordFormat : std::uint8_t {
   kAsc,            ///< Vector
   kTrc,            ///< PEAK
   kBlf,            ///< Vector
-  kMdf4,           ///< ASAM, as CAN loggers write it
+  kMdf4,           ///< ASAM, with frames of a CAN bus
   // Rows.
-  kTable,  ///< text in columns, or text that is nothing else
-  kNpy,    ///< NumPy, one array
-  kNpz,    ///< NumPy, several
-  kMat,    ///< MATLAB up to 7
-  kHdf5,   ///< also MATLAB 7.3
+  kTable,     ///< text in columns, or text that is nothing else
+  kNpy,       ///< NumPy, one array
+  kNpz,       ///< NumPy, several
+  kMat,       ///< MATLAB up to 7
+  kHdf5,      ///< also MATLAB 7.3
+  kMdf4Rows,  ///< ASAM, of measured signals
   // Known by name, but not read.
   kMdf3,
   kOtherZip,  ///< Excel, LibreOffice or an archive
@@ -42,7 +43,8 @@ enum class RecordFormat : std::uint8_t {
 
 /// What the first bytes of a file, decompressed, say. 64 KiB are enough, a few lines do.
 [[nodiscard]] RecordFormat format_of(std::string_view head) noexcept;
-/// Reads so many. Of a pipe it waits until the first line is whole, and can be opened again.
+/// Reads so many; of MDF4 its description, too, since its beginning does not tell frames from
+/// signals. Of a pipe it waits until the first line is whole, and can be opened again.
 [[nodiscard]] Outcome<RecordFormat> detect_format(const std::string& path);
 
 [[nodiscard]] bool holds_frames(RecordFormat format) noexcept;

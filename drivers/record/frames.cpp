@@ -9,6 +9,7 @@
 #include "drivers/blf/source.hpp"
 #include "drivers/candump/screen.hpp"
 #include "drivers/candump/source.hpp"
+#include "drivers/mdf/source.hpp"
 #include "drivers/record/frame_lines.hpp"
 #include "drivers/trc/parser.hpp"
 
@@ -44,6 +45,8 @@ Outcome<std::unique_ptr<RecordedFrames>> open_frames(const FrameFileConfig& conf
       return FrameLines::open(config, std::make_unique<TrcParser>());
     case RecordFormat::kBlf:
       return BlfSource::open(config);
+    case RecordFormat::kMdf4:
+      return MdfSource::open(config);
     default:
       return as_frames(CandumpSource::open(config));
   }

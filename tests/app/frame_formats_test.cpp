@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The same frames in every format give the same bytes of state.dls. The files are written by
-// can-utils (log2asc, log2long) and python3-can, never by this project.
+// can-utils (log2asc, log2long) and python3-can, never by this project; but for MDF4, which no
+// program of Debian writes: tests/mdf4.py does, by the format's description.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "tests/app/program.hpp"
@@ -123,6 +125,32 @@ with open('back.log', 'w') as out:
   EXPECT_EQ(state_of("back.log"), state);
   ASSERT_TRUE(shell("gzip -k a9.blf"));
   EXPECT_EQ(state_of("a9.blf.gz"), state);
+}
+
+TEST_F(FrameFormats, Mdf4InEveryLayout) {
+  ASSERT_TRUE(python(R"(
+import sys
+sys.path.insert(0, ')" DAMPLINE_SOURCE_DIR R"(/tests')
+import mdf4
+frames, start = mdf4.read_candump('a.log')
+for i, (sort, variable, deflate, pieces) in enumerate([
+        (False, None, None, None), (True, 'data', None, None), (True, 'data', 'plain', 7),
+        (False, 'records', 'plain', 7), (False, 'data', 'transposed', 7), (True, None, 'transposed', None)]):
+    mdf4.write_frames('m%d.mf4' % i, frames, start, sort=sort, variable=variable, deflate=deflate, pieces=pieces)
+mdf4.write_frames('m_unfinished.mf4', frames, start, variable='records', lacks=0x25)
+mdf4.write_frames('m_real.mf4', frames, start, time='real', id_bytes=4)
+)")) << program_.read(".shell");
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{program_.path("")}) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".mf4") continue;
+    ++files;
+    EXPECT_EQ(state_of(name), expected_) << name;
+  }
+  EXPECT_EQ(files, 8);
+  EXPECT_EQ(state_of("-", "cat m_real.mf4 |"), expected_);
+  ASSERT_TRUE(shell("gzip -k m_real.mf4"));
+  EXPECT_EQ(state_of("m_real.mf4.gz"), expected_);
 }
 
 }  // namespace

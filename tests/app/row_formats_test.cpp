@@ -101,5 +101,26 @@ with open('bare.toml', 'w') as out:
     EXPECT_EQ(state_of(std::string{file} + " --config bare.toml"), expected_) << file;
 }
 
+/// The last column has whole millionths, so that the table is written anew from what they are.
+TEST_F(RowFormats, Mdf4OfMeasuredSignals) {
+  ASSERT_TRUE(python(R"(
+import sys
+sys.path.insert(0, ')" DAMPLINE_SOURCE_DIR R"(/tests')
+import mdf4
+order = sorted(range(len(names)), key=lambda i: names[i] != 'time_s')
+mixed = [[r[i] for i in order] for r in rows]
+for r in mixed: r[-1] = round(1e6 * r[-1]) * 1e-6
+for name, deflate, pieces in ('plain', None, None), ('packed', 'transposed', 5):
+    mdf4.write_signals(name + '.mf4', [names[i] for i in order], mixed, deflate=deflate, pieces=pieces)
+with open('mixed.csv', 'w') as out:
+    out.write(','.join(names[i] for i in order) + chr(10))
+    for r in mixed: out.write(','.join(map(repr, r)) + chr(10))
+)")) << program_.read(".shell");
+  const StateBytes state = state_of("mixed.csv");
+  EXPECT_EQ(state_of("plain.mf4"), state);
+  EXPECT_EQ(state_of("packed.mf4"), state);
+  EXPECT_EQ(state_of("-", "cat packed.mf4 |"), state);
+}
+
 }  // namespace
 }  // namespace dampline::app

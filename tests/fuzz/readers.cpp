@@ -178,6 +178,12 @@ void read_arrays(Bytes bytes) {
   while (reader.value()->read(row)) require(reader.value()->health().rows <= bytes.size());
 }
 
+/// Frames, or measured signals.
+void read_mdf(Bytes bytes) {
+  read_recording(bytes);
+  read_arrays(bytes);
+}
+
 /// The input holds what a file does without its checksums, which no fuzzer finds: they are set
 /// here. A byte of the choice says whether.
 void read_blackbox(Bytes bytes) {
@@ -385,6 +391,7 @@ constexpr std::array kReaders{Reader{"dbc", read_dbc},
                               Reader{"asc", read_recording},
                               Reader{"trc", read_recording},
                               Reader{"blf", read_recording},
+                              Reader{"mdf", read_mdf},
                               Reader{"compressed", read_recording},
                               Reader{"csv", read_csv},
                               Reader{"npy", read_arrays},
