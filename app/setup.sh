@@ -39,6 +39,8 @@ poppler-utils        pdftotext, which reads it from paper
 python3              drives the browser
 libhdf5-dev          reads HDF5, an optional part of the program
 python3-h5py         writes it
+libmatio-dev         reads MAT files below version 7.3, an optional part of the program
+python3-scipy        writes them
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

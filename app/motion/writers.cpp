@@ -5,16 +5,20 @@
 
 #include <array>
 #include <bit>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 #include <string_view>
 
 #include "app/error.hpp"
 #include "app/run/json.hpp"
 #include "app/verbs/output.hpp"
+#include "drivers/record/column_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -46,6 +50,39 @@ void append_npy(const MotionRow& row, fmt::memory_buffer& out) {
   out.append(bytes.data(), bytes.data() + bytes.size());
 }
 
+double number_of(const MotionRow& row, std::size_t column) {
+  return column == 0 ? row.time_s : column == 1 ? row.deflection_m : row.velocity_mps;
+}
+
+/// Through a file without a name, since the libraries write anywhere in theirs.
+void write_columns(MotionSeries& series, MotionFormat format, TextFile& out) {
+  struct Closer {
+    void operator()(std::FILE* file) const noexcept {
+      std::fclose(file);  // NOLINT(*-owning-memory): the pointer's deleter
+    }
+  };
+  const std::unique_ptr<std::FILE, Closer> file{std::tmpfile()};
+  if (!file) throw RunError{"there is no room in the temporary folder"};
+  drivers::ColumnTable table;
+  table.names = {"time_s", "deflection_m", "velocity_mps"};
+  table.rows = series.summary().rows;
+  table.fill = [&](std::size_t column, std::span<double> values) {
+    std::size_t at = 0;
+    series.each([&](const MotionRow& row) { values[at++] = number_of(row, column); });
+  };
+  const std::string path = fmt::format("/proc/self/fd/{}", ::fileno(file.get()));
+  const auto written = format == MotionFormat::kMat ? drivers::write_mat(path, table)
+                                                    : drivers::write_hdf5(path, table);
+  if (!written.ok() && written.failure().code == Errc::kInvalidConfig)
+    throw UsageError{fmt::format("--out: {}", written.error_text())};
+  if (!written) throw RunError{written.error_text()};
+  std::array<char, 65536> part{};
+  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
+    out.buffer().append(part.data(), part.data() + count);
+    out.tick();
+  }
+}
+
 std::string csv_header(const MotionSummary& summary) {
   std::string out;
   std::istringstream lines{motion_text(summary)};
@@ -59,12 +96,20 @@ MotionFormat motion_format(const std::string& file) {
   const std::string suffix = std::filesystem::path{file}.extension().string();
   if (file == "-" || suffix == ".csv") return MotionFormat::kCsv;
   if (suffix == ".npy") return MotionFormat::kNpy;
-  throw UsageError{fmt::format("--out: found {}, expected a name that ends in .csv or .npy", file)};
+  if (suffix == ".mat") return MotionFormat::kMat;
+  if (suffix == ".h5" || suffix == ".hdf5") return MotionFormat::kHdf5;
+  throw UsageError{
+      fmt::format("--out: found {}, expected a name that ends in .csv, .npy, .mat or .h5", file)};
 }
 
 void write_motion(MotionSeries& series, const std::string& file, MotionFormat format,
                   bool replace) {
   TextFile out{file, replace};
+  if (format == MotionFormat::kMat || format == MotionFormat::kHdf5) {
+    write_columns(series, format, out);
+    out.close();
+    return;
+  }
   const std::string head = format == MotionFormat::kNpy ? npy_header(series.summary().rows)
                                                         : csv_header(series.summary());
   out.buffer().append(head.data(), head.data() + head.size());

@@ -60,7 +60,8 @@ void add_motion_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("SOURCE", flags->source.path,
                    "a truck's record of any format, a black box, or - for standard input")
       ->required();
-  verb->add_option("--out", flags->out, "FILE.csv or FILE.npy; - is CSV on the standard output")
+  verb->add_option("--out", flags->out,
+                   "FILE.csv, FILE.npy, FILE.mat or FILE.h5; - is CSV on the standard output")
       ->required();
   verb->add_option("--config", flags->config, "configuration (TOML), as for identify");
   verb->add_flag("--force", flags->force, "replace a file that exists");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "drivers/hdf5/reader.hpp"
+#include "drivers/record/column_file.hpp"
 
 namespace dampline::drivers {
 
@@ -11,6 +12,11 @@ Outcome<std::unique_ptr<RecordedRows>> open_hdf5(const RowFileConfig& config) {
                  fmt::format("{}: is an HDF5 file, which this program was built without; build it "
                              "with libhdf5-dev, or export the file as CSV",
                              config.path)};
+}
+
+Outcome<bool> write_hdf5(const std::string& /*path*/, const ColumnTable& /*table*/) {
+  return Failure{Errc::kInvalidConfig,
+                 "HDF5 files are what this program was built without; build it with libhdf5-dev"};
 }
 
 }  // namespace dampline::drivers

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "drivers/bytes/spool.hpp"
+#include "drivers/hdf5/handle.hpp"
 
 namespace dampline::drivers {
 namespace {
@@ -22,24 +23,7 @@ constexpr std::size_t kMostSets = 1024;
 constexpr std::size_t kMostColumns = 1024;
 constexpr std::size_t kPieceNumbers = 16384;  // of a data set at once
 
-/// An identifier of the library, closed as its kind is.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_{id}, close_{close} {}
-  Handle(Handle&& other) noexcept : id_{std::exchange(other.id_, -1)}, close_{other.close_} {}
-  Handle& operator=(Handle&&) = delete;
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  [[nodiscard]] hid_t id() const noexcept { return id_; }
-  [[nodiscard]] bool ok() const noexcept { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+using Handle = Hdf5Handle;
 
 /// A data set of numbers as rows and columns.
 struct Set {
@@ -203,14 +187,8 @@ class Hdf5Reader final : public RecordedRows {
 Outcome<std::unique_ptr<RecordedRows>> open_hdf5(const RowFileConfig& config) {
   const auto path = spooled(config.path);
   if (!path) return path.failure();
-  if (path.value() != config.path)
-    return Failure{
-        Errc::kMalformed,
-        fmt::format("{}: is HDF5, expected it in a file of its own, neither compressed nor "
-                    "from a pipe",
-                    config.path)};
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it would print is told by errors here
-  Handle file{H5Fopen(path.value().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};
+  Handle file{H5Fopen(path.value().c_str(), H5F_ACC_RDONLY, hdf5_access().id()), H5Fclose};
   if (!file.ok())
     return Failure{Errc::kMalformed,
                    fmt::format("{}: is an HDF5 file that is damaged or cut off", config.path)};

@@ -9,6 +9,7 @@
 
 #include "drivers/csv/reader.hpp"
 #include "drivers/hdf5/reader.hpp"
+#include "drivers/mat/reader.hpp"
 #include "drivers/mdf/reader.hpp"
 #include "drivers/npy/reader.hpp"
 #include "drivers/text/cursor.hpp"
@@ -114,6 +115,7 @@ Outcome<std::unique_ptr<RecordedRows>> open_rows(const RowFileConfig& config) {
   if (format.value() == RecordFormat::kNpy || format.value() == RecordFormat::kNpz)
     return NpyReader::open(config, format.value());
   if (format.value() == RecordFormat::kHdf5) return open_hdf5(config);
+  if (format.value() == RecordFormat::kMat) return open_mat(config);
   if (format.value() == RecordFormat::kMdf4Rows) return MdfReader::open(config);
   auto table = CsvReader::open(config);
   if (!table) return table.failure();
