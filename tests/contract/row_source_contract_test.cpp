@@ -6,13 +6,18 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "drivers/csv/reader.hpp"
+#include "drivers/record/column_file.hpp"
+#include "drivers/record/rows.hpp"
 #include "hal/row_source.hpp"
 
 namespace dampline {
@@ -75,6 +80,73 @@ class Csv {
   std::unique_ptr<drivers::CsvReader> source_;
 };
 
+/// A file that a Format writes, opened by its content.
+template <class Format>
+class RecordedTable {
+ public:
+  RecordedTable()
+      : path_{std::filesystem::temp_directory_path() /
+              fmt::format("dampline_contract_{}.table", ::getpid())} {
+    Format::write(path_.string());
+    auto opened = drivers::open_rows(
+        {.path = path_.string(), .required = {"time_s", "deflection_m", "force_n"}});
+    EXPECT_TRUE(opened.ok()) << opened.error_text();
+    source_ = std::move(opened.value());
+  }
+  ~RecordedTable() { std::filesystem::remove(path_); }
+  RecordedTable(const RecordedTable&) = delete;
+  RecordedTable& operator=(const RecordedTable&) = delete;
+  hal::RowSource& source() { return *source_; }
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<drivers::RecordedRows> source_;
+};
+
+double contract_cell(std::size_t column, std::size_t row) {
+  return column == 2 ? std::numeric_limits<double>::quiet_NaN()
+                     : static_cast<double>((column + 1) * row);
+}
+
+struct Npy {
+  static void write(const std::string& path) {
+    std::ofstream out{path, std::ios::binary};
+    std::string head = fmt::format(
+        "{{'descr': [('time_s', '<f8'), ('deflection_m', '<f8'), ('force_n', '<f8')], "
+        "'fortran_order': False, 'shape': ({},), }}",
+        kRows);
+    head.resize(128 - 11, ' ');
+    out << std::string{"\x93NUMPY\x01\x00\x76\x00", 10} << head << '\n';
+    for (std::size_t i = 0; i < 3 * kRows; ++i) {
+      const double cell = contract_cell(i % 3, i / 3);
+      out.write(reinterpret_cast<const char*>(&cell), sizeof cell);
+    }
+  }
+};
+
+template <drivers::Outcome<bool> (*kWrite)(const std::string&, const drivers::ColumnTable&)>
+struct Columns {
+  static void write(const std::string& path) {
+    drivers::ColumnTable table{{"time_s", "deflection_m", "force_n"}, kRows, {}};
+    table.fill = [](std::size_t column, std::span<double> values) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = contract_cell(column, i);
+    };
+    ASSERT_TRUE(kWrite(path, table).ok());
+  }
+};
+
+/// By tests/mdf4.py; its last column may be invalid.
+struct MdfSignals {
+  static void write(const std::string& path) {
+    const std::string command = fmt::format(
+        "/usr/bin/python3 -c \"import sys; sys.path.insert(0, '{}/tests'); import mdf4; "
+        "mdf4.write_signals('{}', ['t', 'deflection_m', 'force_n'], [(i, 2 * i, float('nan')) for "
+        "i in range({})])\"",
+        DAMPLINE_SOURCE_DIR, path, kRows);
+    ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT(cert-env33-c) the writer is a program
+  }
+};
+
 template <class Implementation>
 class RowSourceContract : public ::testing::Test {
  protected:
@@ -84,7 +156,17 @@ class RowSourceContract : public ::testing::Test {
   Implementation implementation_;
 };
 
-using RowImplementations = ::testing::Types<FakeRecord, Csv>;
+using RowImplementations =
+    ::testing::Types<FakeRecord, Csv, RecordedTable<Npy>, RecordedTable<MdfSignals>
+#if DAMPLINE_HAS_HDF5
+                     ,
+                     RecordedTable<Columns<drivers::write_hdf5>>
+#endif
+#if DAMPLINE_HAS_MATIO
+                     ,
+                     RecordedTable<Columns<drivers::write_mat>>
+#endif
+                     >;
 TYPED_TEST_SUITE(RowSourceContract, RowImplementations);
 
 TYPED_TEST(RowSourceContract, FillsWholeRowsOneBehindTheOther) {

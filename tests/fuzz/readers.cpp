@@ -31,6 +31,7 @@
 #include "drivers/dbc/channel.hpp"
 #include "drivers/dbc/parse.hpp"
 #include "drivers/gpiod/edges.hpp"
+#include "drivers/mat/whole.hpp"
 #include "drivers/record/frames.hpp"
 #include "drivers/record/rows.hpp"
 #include "drivers/socketcan/link.hpp"
@@ -182,6 +183,13 @@ void read_arrays(Bytes bytes) {
 void read_mdf(Bytes bytes) {
   read_recording(bytes);
   read_arrays(bytes);
+}
+
+/// What is looked at before libmatio reads the file.
+void read_mat(Bytes bytes) {
+  const MemoryFile file{bytes};
+  const auto opened = drivers::RandomFile::open(file.path());
+  if (opened) static_cast<void>(drivers::fault_of_mat(*opened.value()));
 }
 
 /// The input holds what a file does without its checksums, which no fuzzer finds: they are set
@@ -392,6 +400,7 @@ constexpr std::array kReaders{Reader{"dbc", read_dbc},
                               Reader{"trc", read_recording},
                               Reader{"blf", read_recording},
                               Reader{"mdf", read_mdf},
+                              Reader{"mat", read_mat},
                               Reader{"compressed", read_recording},
                               Reader{"csv", read_csv},
                               Reader{"npy", read_arrays},
