@@ -149,9 +149,7 @@ namespace {
 
 std::string quantity(const std::optional<Parameter>& p) {
   if (!p) return "";
-  const QuantityText text = format_quantity(p->value, p->std);
-  return text.std.empty() ? fmt::format("{} {}", text.value, p->unit)
-                          : fmt::format("{} ± {} {}", text.value, text.std, p->unit);
+  return quantity_text(p->value, p->std, p->unit);
 }
 
 /// To the second, which a reader can compare.
@@ -163,10 +161,12 @@ std::string start_text(const Origin& origin) {
   return text;
 }
 
+/// In the unit that the quantity itself, of about that size, is read in.
 std::string difference_text(const Difference& d) {
-  const QuantityText text = format_quantity(d.value, d.std);
+  const ReadUnit unit = read_unit(d.unit, 100.0 * d.value / d.percent);
+  const QuantityText text = format_quantity(unit.factor * d.value, unit.factor * d.std);
   const std::string size = text.value.starts_with('-') ? text.value : "+" + text.value;
-  return fmt::format("{} {} ({:+.2g} %, {:+.1f} std)", size, d.unit, d.percent, d.deviations);
+  return fmt::format("{} {} ({:+.2g} %, {:+.1f} std)", size, unit.name, d.percent, d.deviations);
 }
 
 /// Columns as wide as their widest cell.

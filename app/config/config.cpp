@@ -181,6 +181,19 @@ class Loader {
   std::string origin_;
 };
 
+/// "car", "input", "input.columns", ...
+std::vector<std::string> tables_of(const toml::table& file) {
+  std::vector<std::string> out;
+  if (file["run"].is_table()) return out;
+  for (const auto& [key, node] : file) {
+    if (!node.is_table()) continue;
+    out.emplace_back(key.str());
+    for (const auto& [inner, part] : *node.as_table())
+      if (part.is_table()) out.push_back(fmt::format("{}.{}", key.str(), inner.str()));
+  }
+  return out;
+}
+
 }  // namespace
 
 Config parse_config(std::string_view text, const std::string& origin) {
@@ -190,6 +203,7 @@ Config parse_config(std::string_view text, const std::string& origin) {
     Loader{config, origin}.read_file(file);
     config.input.sample_rate_is_set = file["input"]["sample_rate_hz"].is_number();
     config.model.base_is_set = !!file["model"]["base"];
+    config.tables = tables_of(file);
   } catch (const toml::parse_error& error) {
     throw UsageError{
         fmt::format("{}:{}: not TOML: {}", origin, error.source().begin.line, error.description())};

@@ -127,6 +127,8 @@ struct Config {
   BlackboxSettings blackbox;
   LiveSettings live;
   GpioConfig gpio;
+  /// Those that the file has; none of a run directory's own run.toml, which has them all.
+  std::vector<std::string> tables;
 };
 
 /// Reads a TOML file over the defaults. Relative paths in it become relative to its folder.

@@ -2,6 +2,7 @@
 #include "app/inspect/check.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -175,7 +176,18 @@ std::string check_truck(const Config& config, const SourceOptions& source, Sourc
   return text;
 }
 
+/// Tables that a truck reads, and a rig does not.
+void refuse_truck_tables(const Config& config, const std::string& source) {
+  constexpr std::array<std::string_view, 5> kRead{"record", "input", "input.columns", "input.scale",
+                                                  "model"};
+  for (const std::string& table : config.tables)
+    if (std::find(kRead.begin(), kRead.end(), table) == kRead.end())
+      throw UsageError{fmt::format("[{}]: nothing reads it: {} is a rig's record; expected [{}]",
+                                   table, source, fmt::join(kRead, "], ["))};
+}
+
 std::string check_rig(const Config& config, const SourceOptions& source) {
+  refuse_truck_tables(config, source.path);
   const rig::Record record = rig::csv_record(source.path, config.input, source.skip_bad_lines);
   const auto rows = record.open();
   std::uint64_t count = 0;

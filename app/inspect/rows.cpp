@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,11 +87,78 @@ struct Understood {
   Config config;
   std::optional<SourceKind> kind;
   std::string problem;
+  bool guessed{false};  ///< columns of a table without a header
 };
+
+/// "1", "2", ...: the table has no header.
+bool is_numbered(const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] != std::to_string(i + 1)) return false;
+  return !names.empty();
+}
+
+/// A column of a table without a header, by its first rows.
+struct NumberedColumn {
+  std::string name;
+  Values values;
+  bool rises{true};
+  double last{-std::numeric_limits<double>::infinity()};
+};
+
+std::vector<NumberedColumn> beginning_of(const std::string& path,
+                                         const std::vector<std::string>& names) {
+  constexpr std::size_t kRows = 3000;
+  drivers::RowFileConfig file;
+  file.path = path;
+  file.optional = names;
+  file.time_column.clear();
+  file.skip_bad_lines = true;
+  const auto opened = drivers::open_rows(file);
+  if (!opened.ok()) throw RunError{opened.error_text()};
+  std::vector<NumberedColumn> out(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) out[i].name = names[i];
+  std::vector<double> row(names.size());
+  for (std::size_t rows = 0; rows < kRows && opened.value()->read(row); ++rows)
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      out[i].values.take(row[i]);
+      out[i].rises = out[i].rises && row[i] > out[i].last;
+      out[i].last = row[i];
+    }
+  return out;
+}
+
+/// What rises from row to row is the time; of three others the one that moves least is the frame,
+/// of two the larger one is the force. Nothing: it is neither.
+void guess_columns(const std::string& path, InputConfig& input) {
+  constexpr double kLongestStepS = 0.1;  // beyond it, times are ms
+  const auto header = drivers::header_of(path);
+  if (!header.ok() || !is_numbered(header.value())) return;
+  std::vector<NumberedColumn> columns = beginning_of(path, header.value());
+  std::erase_if(columns, [](const NumberedColumn& c) { return !c.values.moves(); });
+  const auto time =
+      std::find_if(columns.begin(), columns.end(), [](const NumberedColumn& c) { return c.rises; });
+  if (time == columns.end() || (columns.size() != 3 && columns.size() != 4)) return;
+  input.columns[index(Column::kTime)] = time->name;
+  if (time->values.step() > kLongestStepS) input.scale[index(Column::kTime)] = 1e-3;
+  columns.erase(time);
+  const auto least = std::min_element(columns.begin(), columns.end(), [](auto& a, auto& b) {
+    return a.values.rms() < b.values.rms();
+  });
+  std::rotate(columns.begin(), least, least + 1);
+  const auto set = [&](Column column, std::size_t i) {
+    input.columns[index(column)] = columns[i].name;
+  };
+  if (columns.size() == kChannels)
+    for (std::size_t c = 0; c < kChannels; ++c) set(kTruckColumns[c], c);
+  else
+    for (std::size_t c = 0; c < 2; ++c) set(c == 0 ? Column::kDeflection : Column::kForce, c);
+}
 
 Understood understand(const std::string& path) {
   Understood out;
   const SourceOptions source{path, true};
+  guess_columns(path, out.config.input);
+  out.guessed = !out.config.input.columns[index(Column::kTime)].empty();
   try {
     RecognisedColumns seen = recognise_columns(out.config, source);
     out.config = std::move(seen.config);
@@ -201,9 +269,16 @@ void inspect_rows(const InspectOptions& options, Inspection& found) {
   if (!understood.problem.empty()) found.notes.push_back(understood.problem);
   if (!understood.kind) return;
   const InputConfig& input = understood.config.input;
+  if (understood.guessed)
+    found.notes.emplace_back(
+        "The table has no header: its columns go by number, and what they are is guessed from what "
+        "they hold. Check columns and units.");
   if (*understood.kind == SourceKind::kTruckRows) {
     for (std::size_t c = 0; c < kChannels; ++c)
-      found.truck[c] = Candidate{input.header(kTruckColumns[c]), "by its name"};
+      found.truck[c] = Candidate{input.header(kTruckColumns[c]),
+                                 !understood.guessed ? "by its name"
+                                 : c == 0            ? "by its rms, the least of three: check it"
+                                                     : "what is left: check it"};
     found.configuration = std::string{kMassLines} + "\n";
   }
   found.configuration += column_tables(input, names);

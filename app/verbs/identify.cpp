@@ -152,8 +152,8 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   const auto options = std::make_shared<ExplainFlags>();
   verb->add_option(
           "RECORD", options->records,
-          "a truck's record: FILE.log (candump), FILE.csv, or a black box; or records of a "
-          "rig (FILE.csv), explained by one model")
+          "a truck's record of any format that identify reads, or a black box; or records of "
+          "a rig in columns (CSV, NumPy, MAT, HDF5, MDF4), explained by one model")
       ->required();
   verb->add_option("--validate", options->validation,
                    "records that are never fitted, only predicted; after RECORD")
