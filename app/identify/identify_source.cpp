@@ -109,8 +109,10 @@ std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions&
 
 Identified identify_source(const Config& config, const SourceOptions& source, SourceKind kind,
                            bool show_progress) {
-  // Beside the identification, so that a checksum costs no time.
-  auto record = std::async(std::launch::async, describe_record, source.path);
+  // Beside the identification, so that a checksum costs no time; of a pipe after it.
+  const bool is_file = std::filesystem::is_regular_file(source.path);
+  auto record = std::async(is_file ? std::launch::async : std::launch::deferred, describe_record,
+                           source.path);
   Identified out = kind == SourceKind::kRigRows
                        ? identify_rig_file(config, source, show_progress)
                        : identify_truck(config, source, kind, show_progress);

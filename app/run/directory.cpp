@@ -123,6 +123,9 @@ void RunDirectory::make_staging() {
         shown_.string())};
   staging_ = beside_ ? make_partial(parent, stem, lock_)
                      : make_partial(target_, std::string{kPartial}, lock_);
+  std::vector<fs::path> folders{staging_};
+  folders.insert(folders.end(), made_.begin(), made_.end());
+  swept_.emplace(folders);
 }
 
 void RunDirectory::remove_made() noexcept {
@@ -136,6 +139,7 @@ RunDirectory::~RunDirectory() {
 }
 
 void RunDirectory::write(const std::string& name, std::string_view content) {
+  swept_.reset();
   write_new(lock_.get(), name, content, shown_);
   names_.push_back(name);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,13 +10,15 @@
 #include "app/run/disk.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
+#include "app/run/swept.hpp"
 
 namespace dampline::app {
 
 /// Where a run writes its results. Files are staged out of sight and appear together at commit(),
 /// in one exchange of names: whatever interrupts it, there is the earlier run or the new one,
 /// whole. A directory without `run.toml` is not a run. When the object goes away uncommitted,
-/// everything that it made goes too; what a kill left of another is removed.
+/// everything that it made goes too, also where a signal ends the program before anything is
+/// staged; what a kill left of another is removed.
 class RunDirectory {
  public:
   /// Makes the directory where it is missing, so that a place that cannot be written fails before
@@ -49,6 +52,7 @@ class RunDirectory {
       made_;  ///< directories that did not exist before, innermost first
   std::vector<std::string> names_;
   bool committed_{false};
+  std::optional<SweptOnSignal> swept_;  ///< as long as nothing is staged
 };
 
 /// STEM.run, or STEM.run.N behind the highest number that exists in `folder`.

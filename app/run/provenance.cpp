@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 #include <nettle/sha2.h>
+#include <sys/stat.h>
 #include <toml++/toml.h>
+#include <unistd.h>
 
 #include <array>
 #include <charconv>
@@ -16,6 +18,7 @@
 #include "app/error.hpp"
 #include "app/run/commit.hpp"
 #include "app/text/format.hpp"
+#include "drivers/bytes/byte_stream.hpp"
 
 namespace dampline::app {
 namespace {
@@ -55,8 +58,17 @@ InputFile describe_input(const std::filesystem::path& file, const std::string& r
 }
 
 InputFile describe_record(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return {path, "record", 0, ""};
-  return describe_input(path, "record");
+  if (std::filesystem::is_regular_file(path)) return describe_input(path, "record");
+  struct stat status {};
+  if (path == "-" && ::fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode) &&
+      ::lseek(STDIN_FILENO, 0, SEEK_CUR) == 0) {
+    InputFile out = describe_input("/proc/self/fd/0", "record");
+    out.name = path;
+    return out;
+  }
+  const auto passed = drivers::ByteStream::passed_through(path);
+  return passed ? InputFile{path, "record", passed->bytes, passed->sha256}
+                : InputFile{path, "record", 0, ""};
 }
 
 std::string version() { return DAMPLINE_VERSION; }

@@ -115,7 +115,7 @@ Findings explain_rig_records(const Config& config, const ExplainFlags& options,
                             options.skip_bad_lines, !options.no_refine});
   found.notes.insert(found.notes.begin(), notes.begin(), notes.end());
   std::vector<InputFile> inputs;
-  for (const std::string& path : options.records) inputs.push_back(describe_input(path, "record"));
+  for (const std::string& path : options.records) inputs.push_back(describe_record(path));
   for (const std::string& path : options.validation)
     inputs.push_back(describe_input(path, "validation"));
   RunResult result = rig::identify(
@@ -350,9 +350,10 @@ void add_identify_verb(CLI::App& program, std::function<int()>& action) {
       "Turn a recorded run, or a live CAN bus, into a damping curve with its "
       "uncertainty");
   const auto options = std::make_shared<IdentifyFlags>();
-  verb->add_option("SOURCE", options->source.path,
-                   "an interface (can0, vcan0), a file of frames (candump, ASC, BLF, TRC, MDF4) or "
-                   "rows (CSV, NumPy, MAT, HDF5, MDF4), a black box, or - for such a file on standard input")
+  verb->add_option(
+          "SOURCE", options->source.path,
+          "an interface (can0, vcan0), a file of frames (candump, ASC, BLF, TRC, MDF4) or "
+          "rows (CSV, NumPy, MAT, HDF5, MDF4), a black box, or - for such a file on standard input")
       ->required();
   verb->add_option("--config", options->config,
                    "configuration (TOML); without it CSV files work by "

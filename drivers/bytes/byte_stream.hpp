@@ -37,6 +37,14 @@ class ByteStream {
     std::size_t count{0};  ///< at least 1 with kBytes, else 0
   };
 
+  /// What a pipe, or standard input, gave from its first byte to its last.
+  struct Passed {
+    std::uint64_t bytes{0};
+    std::string sha256;  ///< 64 hexadecimal digits
+  };
+  /// Nothing: it is none, or was not read to its end.
+  [[nodiscard]] static std::optional<Passed> passed_through(const std::string& path);
+
   /// path "-" is standard input. Errors: no such file, a directory, a pipe that was read already.
   static Outcome<ByteStream> open(const std::string& path);
   ByteStream(ByteStream&& other) noexcept;
@@ -69,6 +77,7 @@ class ByteStream {
   [[nodiscard]] bool start_decompressor(Compression compression) noexcept;
   [[nodiscard]] bool readable(int timeout_ms) const noexcept;
   [[nodiscard]] static std::shared_ptr<Pipe> pipe_of(int descriptor);
+  [[nodiscard]] static std::vector<std::shared_ptr<Pipe>>& pipes();
 
   enum class Mode : std::uint8_t { kUnknown, kPlain, kCompressed };
   std::string name_;
