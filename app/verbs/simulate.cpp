@@ -181,7 +181,10 @@ void add_car_flags(CLI::App& verb, SimulateOptions& options) {
 }
 
 void add_sensor_flags(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option("--noise-mps2", options.noise_mps2, "white noise of a sensor, rms")
+  verb.add_option("--noise-mps2", options.noise_mps2,
+                  "white noise of a sensor, rms; 0: only rounding is left, which is uneven, and "
+                  "which the guards "
+                  "may take for a burst of noise and leave seconds out of the results")
       ->capture_default_str();
   verb.add_option("--bias-mps2", options.bias_mps2, "constant error, one standard deviation")
       ->capture_default_str();
