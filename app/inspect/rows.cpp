@@ -46,6 +46,8 @@ class TimeAxis {
     found.longest_gap_s = longest_s_;
   }
 
+  [[nodiscard]] double first_s() const { return first_s_.value_or(0.0); }
+
  private:
   static constexpr std::size_t kFirst = 512;
 
@@ -221,6 +223,10 @@ void read_rows(const InspectOptions& options, const std::vector<std::string>& na
     }
   }
   axis.conclude(found);
+  if (const auto zero_ns = rows.start_utc_ns(); zero_ns && !found.start_s) {
+    found.start_s = 1e-9 * static_cast<double>(*zero_ns) + axis.first_s();
+    found.clock = drivers::RecordClock::kUtc;
+  }
   found.count = rows.health().rows;
   found.malformed = rows.health().malformed;
   const std::vector<std::string>& header = rows.header();

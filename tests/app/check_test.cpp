@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // `config check`: what it finds beyond the keys, alone and against a record.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/app/program.hpp"
@@ -91,6 +93,22 @@ TEST_F(ConfigCheck, TellsFramesFromColumns) {
               HasSubstr("run.csv holds columns"));
   program_.write("mass.toml", "[car]\nmoving_mass_kg = 9700.0\n");
   EXPECT_EQ(program_.run("config check mass.toml --record run.csv").code, 0);
+}
+
+TEST_F(ConfigCheck, RefusesTheTablesOfATruckBesideARig) {
+  std::string rig = "time_s,deflection_m,force_n\n";
+  for (int i = 0; i < 3000; ++i)
+    rig += fmt::format("{},{},{}\n", i / 300.0, 0.01 * std::sin(0.05 * i),
+                       std::cos(0.05 * i) > 0.0 ? 500 : -500);
+  program_.write("rig.csv", rig);
+  program_.write("changed.toml", "[record]\nvehicle = \"7\"\n[model]\nstiffness = \"none\"\n");
+  EXPECT_EQ(program_.run("config check changed.toml --record rig.csv").code, 0);
+  for (const std::string table : {"[car]\nmoving_mass_kg = 37200.0", "[guards]\nwait_s = 24.0",
+                                  "[input.anti_alias]\norder = 4"}) {
+    program_.write("changed.toml", table + "\n");
+    EXPECT_THAT(refusal(" --record rig.csv"),
+                AllOf(HasSubstr(table.substr(0, table.find('\n'))), HasSubstr("a rig's record")));
+  }
 }
 
 TEST_F(ConfigCheck, SaysWhichFramesALogHasInstead) {

@@ -214,6 +214,32 @@ TEST_F(Inspect, MotionStatesTheNoiseThatItHas) {
   EXPECT_NEAR(std::sqrt(squares[1]), stated.velocity_mps, 0.05 * stated.velocity_mps);
 }
 
+TEST(InspectNumbered, ProposesColumnsByNumber) {
+  const Program program;
+  ASSERT_EQ(program.run("simulate --duration 40 --quiet --out a.csv").code, 0);
+  const std::string table = program.read("a.csv");
+  const std::size_t first = table.find('\n', table.find("time_s")) + 1;
+  program.write("bare.csv", table.substr(first));
+  const auto found = program.run("inspect bare.csv");
+  ASSERT_EQ(found.code, 0) << found.error;
+  const std::size_t begin = found.output.find("[car]");
+  ASSERT_NE(begin, std::string::npos) << found.output;
+  program.write("bare.toml", found.output.substr(begin));
+  EXPECT_EQ(program.run("config check bare.toml --record bare.csv").code, 0);
+  ASSERT_EQ(program.run("identify bare.csv --config bare.toml --no-report --out b --quiet").code,
+            0);
+  ASSERT_EQ(program.run("identify a.csv --no-report --out a --quiet").code, 0);
+  EXPECT_EQ(program.read("a/curve.csv"), program.read("b/curve.csv"));
+}
+
+TEST(InspectInterface, IsToldApartFromWhatIsNoCanInterface) {
+  const Program program;
+  EXPECT_THAT(program.run("inspect can77").error, testing::HasSubstr("no such CAN interface"));
+  const auto loopback = program.run("inspect lo --duration 1");
+  EXPECT_EQ(loopback.code, 1);
+  EXPECT_THAT(loopback.error, testing::HasSubstr("lo: "));
+}
+
 TEST(MotionNoise, FallsAsTheCornerRises) {
   // One integral of white noise above a sharp corner: S / (4 pi^2 f) of variance, S = 6 s^2 /
   // (fs/2).
