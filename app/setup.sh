@@ -15,6 +15,7 @@ libfmt-dev           text output
 nettle-dev           SHA-256 of the input files and of a page's scripts
 zlib1g-dev           records compressed by gzip, Vector BLF, NumPy's .npz
 libzstd-dev          records compressed by zstd
+libmicrohttpd-dev    the page, the metrics and the events of a live run
 libgpiod-dev         marker lines and the status lamp
 pkg-config           finds libgpiod and its version
 "

@@ -102,6 +102,26 @@ struct LiveSettings {
   int keep_runs{0};  ///< run directories without --out, the oldest go; 0: none goes
 };
 
+/// Where a live run can be seen while it runs.
+struct ServeSettings {
+  std::string address;     ///< "127.0.0.1:9464"; empty: nowhere
+  std::string token_file;  ///< its first line is what a reader must know; empty: loopback only
+};
+
+/// What a live run tells at once.
+struct AlarmSettings {
+  std::optional<double> coulomb_below_n;
+  std::optional<double> coulomb_above_n;
+  std::string reference;                ///< run directory; empty: none
+  std::optional<double> below_percent;  ///< of the reference's level
+  std::optional<double> above_percent;
+  std::string drift{"no"};          ///< "yes": the watch over parameters tells, too
+  std::vector<std::string> faults;  ///< names, or "all"
+  double hysteresis_percent{2.0};   ///< of a limit
+  double hold_s{30.0};
+  std::vector<std::string> on_alarm;  ///< program and its arguments; empty: none
+};
+
 /// Digital lines of a live run.
 struct GpioConfig {
   std::string chip;                ///< "gpiochip0"; empty: no lines are used
@@ -126,6 +146,8 @@ struct Config {
   GuardSettings guards;
   BlackboxSettings blackbox;
   LiveSettings live;
+  ServeSettings serve;
+  AlarmSettings alarm;
   GpioConfig gpio;
   /// Those that the file has; none of a run directory's own run.toml, which has them all.
   std::vector<std::string> tables;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/config/fields.hpp"
 
+#include "dampline/faults.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline::app {
@@ -34,6 +35,14 @@ constexpr std::array<std::string_view, 3> kStiffnessWords{"auto", "identify", "n
 constexpr std::array<std::string_view, 2> kMethodWords{"wavelet", "all"};
 constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
 constexpr std::array<std::string_view, 3> kLeadingWords{"unknown", "wheelset1", "wheelset2"};
+constexpr std::array<std::string_view, 2> kYesNoWords{"no", "yes"};
+/// Of the faults, and all of them.
+constexpr auto kFaultWords = [] {
+  std::array<std::string_view, kFaultKinds + 1> out{};
+  for (std::size_t i = 0; i < kFaultKinds; ++i) out[i] = name_of(static_cast<FaultKind>(i));
+  out.back() = "all";
+  return out;
+}();
 constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
 constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::array<std::string_view, kChannels> kAccelKeys{"frame_accel", "wheelset1_accel",
@@ -177,6 +186,40 @@ void add_live(LiveSettings& live, Fields& out) {
                  IntegerField{&live.keep_runs, {0.0, 1e6}}});
 }
 
+void add_serve(ServeSettings& serve, Fields& out) {
+  out.push_back({"serve", "address",
+                 "HOST:PORT of page, metrics and events, 127.0.0.1:9464; empty: nothing is served",
+                 TextField{&serve.address, {}}});
+  out.push_back({"serve", "token_file",
+                 "its first line is the token of readers; beyond this machine it is needed",
+                 TextField{&serve.token_file, {}}});
+}
+
+void add_alarm(AlarmSettings& alarm, Fields& out) {
+  constexpr Limits kForce{1.0, 1e9};
+  constexpr Limits kPercent{0.1, 1000.0};
+  out.push_back({"alarm", "coulomb_below_n", "raised where the level is lower; absent: not watched",
+                 OptionalNumberField{&alarm.coulomb_below_n, kForce, ""}});
+  out.push_back({"alarm", "coulomb_above_n", "or higher; absent: not watched",
+                 OptionalNumberField{&alarm.coulomb_above_n, kForce, ""}});
+  out.push_back({"alarm", "reference", "run directory of a truck as it should be; empty: none",
+                 TextField{&alarm.reference, {}}});
+  out.push_back({"alarm", "below_percent", "raised where the level is so much below the reference",
+                 OptionalNumberField{&alarm.below_percent, {0.1, 99.9}, ""}});
+  out.push_back({"alarm", "above_percent", "or above it; absent: not watched",
+                 OptionalNumberField{&alarm.above_percent, kPercent, ""}});
+  out.push_back({"alarm", "drift", "yes: raised where a parameter is not what it was",
+                 TextField{&alarm.drift, kYesNoWords}});
+  out.push_back({"alarm", "faults", "raised by these faults of the data, or all; empty: by none",
+                 TextListField{&alarm.faults, kFaultWords}});
+  out.push_back({"alarm", "hysteresis_percent", "of a limit: so far inside before it is cleared",
+                 NumberField{&alarm.hysteresis_percent, {0.0, 50.0}}});
+  out.push_back({"alarm", "hold_s", "raised and cleared by what lasts so long",
+                 NumberField{&alarm.hold_s, {0.0, 1e6}}});
+  out.push_back({"alarm", "on_alarm", "program and its arguments, started at each change; no shell",
+                 TextListField{&alarm.on_alarm, {}}});
+}
+
 void add_gpio(GpioConfig& gpio, Fields& out) {
   out.push_back(
       {"gpio", "chip", "gpiochip0, ...; empty: no lines are used", TextField{&gpio.chip, {}}});
@@ -198,6 +241,8 @@ std::vector<Field> fields(Config& config) {
   add_guards(config.guards, out);
   add_blackbox(config.blackbox, out);
   add_live(config.live, out);
+  add_serve(config.serve, out);
+  add_alarm(config.alarm, out);
   add_gpio(config.gpio, out);
   return out;
 }

@@ -153,7 +153,7 @@ void TruckRun<kParts>::note_taken(const Sample& sample) noexcept {
 
 template <Parts kParts>
 void TruckRun<kParts>::note(const Sample& sample, const UpdateResult& result) {
-  if (watcher_) watcher_(sample, result);
+  for (const Watcher& watcher : watchers_) watcher(sample, result);
   if (result.has_motion) excerpt_.take(result.motion);
   if (!result.block_closed) return;
   note_block(result.block);
@@ -186,9 +186,16 @@ std::string TruckRun<kParts>::state_text() const {
 
 template <Parts kParts>
 TruckView TruckRun<kParts>::view() noexcept {
-  return {
-      core_->snapshot(), first_tick_,     newest_tick_,    first_time_ns_,
-      newest_time_ns_,   core_->faults(), core_->alarms(), core_->guard().block().wheelset_mps2};
+  return {core_->snapshot(),
+          first_tick_,
+          newest_tick_,
+          first_time_ns_,
+          newest_time_ns_,
+          core_->faults(),
+          core_->alarms(),
+          core_->guard().block().wheelset_mps2,
+          blocks_[static_cast<std::size_t>(BlockStatus::kUsed)] +
+              blocks_[static_cast<std::size_t>(BlockStatus::kPartial)]};
 }
 
 template <Parts kParts>

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/config/config.hpp"
 #include "app/identify/collected.hpp"
@@ -31,7 +32,8 @@ struct TruckView {
   std::int64_t newest_time_ns{0};
   FaultView faults;
   AlarmView alarms;
-  double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz, of the newest block of spectra
+  double wheelset_mps2{0.0};       ///< rms, 4 to 90 Hz, of the newest block of spectra
+  std::uint64_t usable_blocks{0};  ///< what an estimate is made of
 };
 
 /// A view as a result, in the record's own time. Throws RunError naming `source` when the measured
@@ -70,7 +72,7 @@ class TruckRun {
   }
   /// Sees every sample that was judged, with what the core made of it.
   using Watcher = std::function<void(const Sample&, const UpdateResult&)>;
-  void watch(Watcher watcher) { watcher_ = std::move(watcher); }
+  void watch(Watcher watcher) { watchers_.push_back(std::move(watcher)); }
   [[nodiscard]] bool empty() const noexcept { return samples_ == 0; }
   /// Samples so far, before they are judged.
   [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
@@ -133,7 +135,7 @@ class TruckRun {
   ExcludedList excluded_;
   ClippingWatch clipping_;
   effect::Circumstances circumstances_;
-  Watcher watcher_;
+  std::vector<Watcher> watchers_;
 };
 
 extern template class TruckRun<kIdentifyParts>;

@@ -192,8 +192,10 @@ void DigitalLines::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void DigitalLines::show(LiveState state, std::int64_t monotonic_ns) noexcept {
-  if (lamp_) lamp_->show(lamp_state(state), monotonic_ns);
+void DigitalLines::show(LiveState state, bool alarm, std::int64_t monotonic_ns) noexcept {
+  const LampState own = lamp_state(state);
+  const bool well = own == LampState::kIdentifying;
+  if (lamp_) lamp_->show(well && alarm ? LampState::kAlarm : own, monotonic_ns);
 }
 
 void DigitalLines::describe(RunResult& result) const {

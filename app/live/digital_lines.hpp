@@ -70,16 +70,18 @@ class EdgeEvents {
   EdgeCounts counts_;
 };
 
-enum class LampState : std::uint8_t { kOff, kIdentifying, kDegraded, kFault };
+enum class LampState : std::uint8_t { kOff, kIdentifying, kDegraded, kFault, kAlarm };
 
 /// Whether the lamp is lit at that moment, so that a person tells the states apart at a glance:
 ///   identifying  steady
 ///   degraded     slow: 1 s on, 1 s off
 ///   fault        quick: four times a second
+///   alarm        lit, with two short breaks every two seconds
 /// A lamp that is dark for more than a second says that the program does not run.
 [[nodiscard]] constexpr bool lamp_lit(LampState state, std::int64_t monotonic_ns) noexcept {
   constexpr std::int64_t kSlowHalfNs = 1'000'000'000;
   constexpr std::int64_t kQuickHalfNs = 125'000'000;
+  constexpr std::int64_t kBreakNs = 250'000'000;
   switch (state) {
     case LampState::kOff:
       return false;
@@ -89,6 +91,8 @@ enum class LampState : std::uint8_t { kOff, kIdentifying, kDegraded, kFault };
       return monotonic_ns / kSlowHalfNs % 2 == 0;
     case LampState::kFault:
       return monotonic_ns / kQuickHalfNs % 2 == 0;
+    case LampState::kAlarm:
+      return monotonic_ns / kBreakNs % 8 != 5 && monotonic_ns / kBreakNs % 8 != 7;
   }
   return false;
 }
@@ -137,7 +141,8 @@ class DigitalLines {
   /// From now on edges become events of `recorder`, which must live until stop().
   void start(Recorder& recorder);
   void stop();
-  void show(LiveState state, std::int64_t monotonic_ns) noexcept;
+  /// `alarm`: shown while the run itself is well.
+  void show(LiveState state, bool alarm, std::int64_t monotonic_ns) noexcept;
   /// Adds counts and warnings. After stop().
   void describe(RunResult& result) const;
 

@@ -13,6 +13,8 @@
 #include "app/record/frames.hpp"
 #include "app/run/disk.hpp"
 #include "app/run/json.hpp"
+#include "app/serve/metrics.hpp"
+#include "app/serve/serving.hpp"
 #include "app/text/format.hpp"
 #include "drivers/blackbox/writer.hpp"
 #include "drivers/os/system_clock.hpp"
@@ -63,6 +65,14 @@ std::unique_ptr<hal::RecordSink> open_sink(const BlackboxSettings& settings,
   return std::move(sink.value());
 }
 
+void publish_files(const LivePlace& place, const RunResult& result, const std::string& text) {
+  std::error_code removed;  // the run directory, which is made again
+  std::filesystem::create_directories(place.run, removed);
+  write_file(place.run / "live.json", text);
+  if (!place.status.empty()) write_file(place.status, text);
+  if (!place.metrics.empty()) write_file(place.metrics, metrics_text(result, nullptr));
+}
+
 std::vector<InputFile> inputs_of(const Config& config, const std::string& interface) {
   std::vector<InputFile> out{{interface, "interface", 0, ""}};
   if (!config.input.can.dbc.empty()) out.push_back(describe_input(config.input.can.dbc, "dbc"));
@@ -86,14 +96,18 @@ Identified identify_live(const Config& config, const std::string& interface,
   Progress progress{place.show_progress};
   LiveOptions live = options;
   live.record = !place.blackbox.empty();
+  const auto serving = open_serving(config);
   LiveOutlets outlets;
   outlets.begin = [&](Recorder& recorder) {
     lines.start(recorder);
     notifier.ready("waiting for samples");
   };
-  outlets.turn = [&](LiveState state, std::uint64_t turns, std::int64_t now_ns) {
-    lines.show(state, now_ns);
-    watchdog.look(turns, now_ns);
+  outlets.turn = [&](const LiveTurn& turn) {
+    lines.show(turn.state, turn.alarm, turn.now_ns);
+    watchdog.look(turn.heartbeats, turn.now_ns);
+    if (serving)
+      serving->turn(
+          {name_of(turn.state), turn.samples, 1e-9 * static_cast<double>(turn.silence_ns)});
   };
   outlets.rotated = [&] {
     notifier.reloading();
@@ -107,17 +121,14 @@ Identified identify_live(const Config& config, const std::string& interface,
     const std::string line = status_line(result);
     notifier.status(line);
     progress.show({}, 0.0, line);
-    std::error_code removed;  // the run directory, which is made again
-    std::filesystem::create_directories(place.run, removed);
     const std::string text = to_json(result);
-    write_file(place.run / "live.json", text);
-    if (!place.status.empty()) write_file(place.status, text);
+    if (serving) serving->publish(result, text);
+    publish_files(place, result, text);
   };
-  LiveRun run{config,
-              assembler,
-              {interface, source.get(), sink.get(), &clock, run_time, inputs_of(config, interface)},
-              live,
-              std::move(outlets)};
+  LiveParts parts{interface, source.get(), sink.get(),
+                  &clock,    run_time,     inputs_of(config, interface)};
+  if (serving) parts.tap = &serving->tap();
+  LiveRun run{config, assembler, parts, live, std::move(outlets)};
   Identified found = run.run();
   lines.describe(found.result);
   return found;

@@ -10,10 +10,11 @@
 namespace dampline::app {
 
 struct LivePlace {
-  std::filesystem::path run;       ///< where live.json is kept up to date
-  std::filesystem::path blackbox;  ///< empty: nothing is recorded
-  std::filesystem::path status;    ///< a copy of live.json where it stays the same; or empty
-  bool show_progress{false};       ///< a line on the terminal
+  std::filesystem::path run;        ///< where live.json is kept up to date
+  std::filesystem::path blackbox;   ///< empty: nothing is recorded
+  std::filesystem::path status;     ///< a copy of live.json where it stays the same; or empty
+  std::filesystem::path metrics{};  ///< Prometheus text for node_exporter; or empty
+  bool show_progress{false};        ///< a line on the terminal
 };
 
 /// Identifies a CAN interface until a signal or the end of the duration. Constructs the drivers.

@@ -11,6 +11,7 @@
 
 #include "app/error.hpp"
 #include "app/record/frames.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {
@@ -40,7 +41,14 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
                                                  acquisition_config(assembler, options))},
       recorder_{*parts.sink, *parts.clock, acquisition_->items()},
       monitor_{*acquisition_, parts.clock->monotonic_ns()},
-      start_ns_{parts.clock->monotonic_ns()} {}
+      alarms_{config.alarm},
+      alarm_program_{config.alarm.on_alarm},
+      start_ns_{parts.clock->monotonic_ns()} {
+  if (parts.tap != nullptr)
+    truck_.watch([tap = parts.tap](const Sample& sample, const UpdateResult& result) {
+      tap->take(sample, result);
+    });
+}
 
 Identified LiveRun::run() {
   const Signals signals;  // before the threads, which inherit what it blocks
@@ -87,7 +95,10 @@ void LiveRun::watch(const Signals& signals) {
     const Condition condition = monitor_.look(recorder_.health(), now_ns);
     state_ = judge(condition);
     silence_ns_ = condition.silence_ns;
-    if (outlets_.turn) outlets_.turn(state_, acquisition_->heartbeats(), now_ns);
+    alarm_program_.collect();
+    if (outlets_.turn)
+      outlets_.turn({state_, alarms_.any_raised(), acquisition_->heartbeats(),
+                     acquisition_->samples(), silence_ns_, now_ns});
     publish_when_fresh();
     if (options_.duration_s > 0.0 && now_ns >= end_ns) return;
   }
@@ -105,7 +116,23 @@ void LiveRun::publish_when_fresh() {
   explainer_.add_newest(result);
   result.origin = origin_of(config_, parts_.inputs, result.origin.recorded);
   result.origin.written_ns = parts_.clock->realtime_ns();
+  raise_alarms(result);
+  if (acquisition_->status().front().any_sample)
+    recorder_.newest_events().describe(acquisition_->status().front().view.first_time_ns, result);
   publish(result);
+}
+
+void LiveRun::raise_alarms(RunResult& result) {
+  for (const AlarmChange& change : alarms_.look(result)) {
+    const std::int64_t now_ns = parts_.run_time.from_monotonic(parts_.clock->monotonic_ns());
+    recorder_.add(
+        {now_ns, change.kind(), change.number, std::llround(change.watch.value.value_or(0.0))});
+    static_cast<void>(alarm_program_.start(change, result.duration_s));
+  }
+  result.watched = alarms_.states();
+  if (alarm_program_.failures() > 0)
+    result.warnings.push_back(fmt::format("[alarm] on_alarm could not be started {} times.",
+                                          format_count(alarm_program_.failures())));
 }
 
 /// A disk that is full or a directory that is gone ends no run: the next version is tried again.
@@ -137,6 +164,7 @@ Identified LiveRun::conclude() {
   out.result = truck_.finish(status.rate, parts_.name);
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
+  out.result.watched = alarms_.states();
   recorder_.events().describe(truck_.first_time_ns(), out.result);
   explainer_.conclude(out.result);
   out.state = truck_.encoded_state();

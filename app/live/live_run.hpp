@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/alarm/alarms.hpp"
+#include "app/alarm/program.hpp"
 #include "app/config/config.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/acquisition.hpp"
@@ -14,6 +16,7 @@
 #include "app/live/recorder.hpp"
 #include "app/live/status.hpp"
 #include "app/run/provenance.hpp"
+#include "app/serve/tap.hpp"
 #include "hal/clock.hpp"
 #include "hal/record_sink.hpp"
 
@@ -35,6 +38,17 @@ struct LiveParts {
   const hal::Clock* clock{nullptr};
   hal::RunTime run_time;
   std::vector<InputFile> inputs{};  ///< the interface, and what else went in
+  MotionTap* tap{nullptr};          ///< where a server gets the motion from; null: nobody asks
+};
+
+/// How a live run stands, some times a second.
+struct LiveTurn {
+  LiveState state{LiveState::kWaiting};
+  bool alarm{false};            ///< one of [alarm] is raised
+  std::uint64_t heartbeats{0};  ///< how often the acquisition's loop has come round
+  std::uint64_t samples{0};
+  std::int64_t silence_ns{0};  ///< since the newest sample
+  std::int64_t now_ns{0};      ///< monotonic
 };
 
 /// What the main thread tells the world; each is called from the thread that called run().
@@ -42,9 +56,8 @@ struct LiveOutlets {
   std::function<void(Recorder&)> begin{};  ///< the threads run
   /// Every publish_every_s. What it throws is counted and told as an event, and ends no run.
   std::function<void(const RunResult&)> publish{};
-  /// Some times a second: the state, how often the acquisition's loop has come round, and now
-  /// (monotonic, ns).
-  std::function<void(LiveState, std::uint64_t, std::int64_t)> turn{};
+  /// Some times a second.
+  std::function<void(const LiveTurn&)> turn{};
   std::function<void()> rotated{};  ///< after SIGHUP
   std::function<void()> end{};      ///< the recorder is about to go
 };
@@ -65,6 +78,7 @@ class LiveRun {
   void rotate();
   void publish_when_fresh();
   void publish(const RunResult& result);
+  void raise_alarms(RunResult& result);
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();
   void note(hal::EventKind kind, std::int64_t value);
@@ -79,6 +93,8 @@ class LiveRun {
   std::unique_ptr<Acquisition> acquisition_;
   Recorder recorder_;
   Monitor monitor_;
+  Alarms alarms_;
+  AlarmProgram alarm_program_;
   Realtime realtime_;  // written before the threads are told apart, and by acquire()
   std::latch ready_{1};
   std::int64_t start_ns_;

@@ -8,6 +8,7 @@ namespace dampline::app {
 namespace {
 
 constexpr std::chrono::milliseconds kWriteTurn{100};
+constexpr std::size_t kNewestEvents = 200;
 
 }  // namespace
 
@@ -29,6 +30,13 @@ void Recorder::add(const hal::Event& event) {
 hal::RecordHealth Recorder::health() const {
   const std::lock_guard lock{health_mutex_};
   return health_;
+}
+
+EventList Recorder::newest_events() const {
+  EventList out;
+  const std::lock_guard lock{health_mutex_};
+  for (const hal::Event& event : newest_) out.add(event);
+  return out;
 }
 
 void Recorder::loop() noexcept {
@@ -75,6 +83,10 @@ void Recorder::take_lost() noexcept {
 void Recorder::keep(const hal::Event& event) noexcept {
   sink_.write(event);
   events_.add(event);
+  if (event.kind == hal::EventKind::kPulse || event.kind == hal::EventKind::kWheelPulse) return;
+  const std::lock_guard lock{health_mutex_};
+  newest_.push_back(event);
+  if (newest_.size() > kNewestEvents) newest_.pop_front();
 }
 
 }  // namespace dampline::app

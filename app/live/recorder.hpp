@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <thread>
 
@@ -41,6 +42,8 @@ class Recorder {
   /// Another source of events, any thread.
   void add(const hal::Event& event);
   [[nodiscard]] hal::RecordHealth health() const;
+  /// While it runs: the newest events but pulses. Any thread.
+  [[nodiscard]] EventList newest_events() const;
   /// After stop().
   [[nodiscard]] const EventList& events() const noexcept { return events_; }
 
@@ -56,7 +59,8 @@ class Recorder {
   std::uint64_t known_lost_{0};
   std::int64_t newest_ns_{0};  // run time of the newest item
   EventList events_;
-  std::mutex others_mutex_;  // of what comes from other threads than the acquisition
+  std::deque<hal::Event> newest_;  // under health_mutex_
+  std::mutex others_mutex_;        // of what comes from other threads than the acquisition
   std::vector<hal::Event> others_;
   mutable std::mutex health_mutex_;
   hal::RecordHealth health_;

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/error.hpp"
 #include "app/record/frames.hpp"
+#include "app/record/rate.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
@@ -56,28 +60,58 @@ void describe_live(const LiveStatus& status, const LiveSurroundings& around, Run
   live.recorded_bytes = around.record.bytes;
   live.records_lost = around.record.lost;
   live.publish_failures = around.publish_failures;
+  if (result.live) live.collecting = result.live->collecting;
   result.live = live;
   warn_of_losses(status, around, result);
   for (const std::string& problem : around.realtime.problems) result.notes.push_back(problem);
 }
 
-RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
-                      const Config& config) {
+Collecting collecting_of(double elapsed_s, std::uint64_t usable_blocks,
+                         const Config& config) noexcept {
+  constexpr double kMotionS = 12.0;
+  const double moved_s = Estimator::kBlockS * static_cast<double>(usable_blocks);
+  const double wait_s = config.guards.wait_s;
+  return {std::min(elapsed_s, wait_s) + std::min(moved_s, kMotionS), wait_s + kMotionS};
+}
+
+namespace {
+
+Collecting collecting_of(const TruckView& view, const Config& config) {
+  const auto ticks = static_cast<double>(view.newest_tick - view.first_tick);
+  return collecting_of(ticks / truck_rate_hz(config.input), view.usable_blocks, config);
+}
+
+}  // namespace
+
+RunResult result_so_far(const LiveStatus& status, const Config& config, const std::string& source) {
   RunResult result;
   result.kind = "truck";
-  result.headline = "Not enough motion yet to identify anything.";
+  const Collecting collecting =
+      status.any_sample ? collecting_of(status.view, config) : collecting_of(0.0, 0, config);
+  result.headline = fmt::format("Collecting motion for the first estimate: {:.0f} of {:.0f} s.",
+                                std::floor(collecting.have_s), collecting.need_s);
   result.trust_reasons = {result.headline};
   result.asymmetry = "not observable from accelerations";
   if (status.any_sample) result.faults = faults_of(status.view, config.input.sample_rate_hz);
   if (status.any_sample && status.view.snapshot.valid) {
     try {
-      result = describe_view(status.view, status.rate, config, around.source);
+      result = describe_view(status.view, status.rate, config, source);
     } catch (const RunError& error) {
       result.warnings.emplace_back(error.what());
     }
   }
   if (status.any_sample)
     result.origin.recorded = recorded_span(status.view.first_time_ns, status.view.newest_time_ns);
+  if (result.parameters.empty()) {
+    result.live.emplace();
+    result.live->collecting = collecting;
+  }
+  return result;
+}
+
+RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
+                      const Config& config) {
+  RunResult result = result_so_far(status, config, around.source);
   describe_frames(status.source, status.assembler, result);
   describe_live(status, around, result);
   return result;

@@ -101,8 +101,16 @@ struct LiveSurroundings {
 /// The live figures and what a reader must know of them; adds to a result of whatever kind.
 void describe_live(const LiveStatus& status, const LiveSurroundings& around, RunResult& result);
 
-/// A result in the middle of a run, with what is known by now. Never throws for too little data:
-/// then it holds counts and says so.
+/// What the first estimate needs, and what of it is there.
+[[nodiscard]] Collecting collecting_of(double elapsed_s, std::uint64_t usable_blocks,
+                                       const Config& config) noexcept;
+
+/// The law as far as it is known by now; `source` is what messages call it. Never throws for too
+/// little data: then it says how much is there.
+[[nodiscard]] RunResult result_so_far(const LiveStatus& status, const Config& config,
+                                      const std::string& source);
+
+/// A result in the middle of a live run: the law, counts, figures.
 [[nodiscard]] RunResult live_result(const LiveStatus& status, const LiveSurroundings& around,
                                     const Config& config);
 

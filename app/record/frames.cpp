@@ -192,13 +192,13 @@ std::string explain_no_sample(const hal::SourceHealth& health, const AssemblerCo
 namespace {
 
 /// By the number of the kind; the black box's format fixes the numbers.
-constexpr std::array<std::string_view, 26> kEventNames{
+constexpr std::array<std::string_view, 28> kEventNames{
     "unknown",           "run_start",         "run_end",         "link_down",     "link_up",
     "interface_removed", "interface_back",    "bus_off",         "bus_restarted", "bus_error",
     "frames_dropped",    "clock_step",        "signal_lost",     "signal_back",   "records_lost",
     "recording_stopped", "recording_resumed", "file_rotated",    "pulse",         "marker_on",
     "marker_off",        "wheel_pulse",       "impossible_edge", "edges_lost",    "publish_failed",
-    "publish_resumed"};
+    "publish_resumed",   "alarm_raised",      "alarm_cleared"};
 
 }  // namespace
 

@@ -186,6 +186,22 @@ void list_members(Archive&& a, Of<DataFaults> auto& f) {
 }
 
 template <class Archive>
+void list_members(Archive&& a, Of<Collecting> auto& c) {
+  a("have_s", c.have_s);
+  a("need_s", c.need_s);
+}
+
+template <class Archive>
+void list_members(Archive&& a, Of<WatchState> auto& w) {
+  a("name", w.name);
+  a("active", w.active);
+  a("value", w.value);
+  a("limit", w.limit);
+  a("unit", w.unit);
+  a("since_s", w.since_s);
+}
+
+template <class Archive>
 void list_members(Archive&& a, Of<LiveFigures> auto& f) {
   a("state", f.state);
   a.object("lateness_us", [&](auto in) {
@@ -206,6 +222,7 @@ void list_members(Archive&& a, Of<LiveFigures> auto& f) {
   a("recorded_bytes", f.recorded_bytes);
   a("records_lost", f.records_lost);
   if (a.has("publish_failures", true)) a("publish_failures", f.publish_failures);
+  if (a.has("collecting", f.collecting.has_value())) a("collecting", f.collecting);
 }
 
 template <class Archive>
@@ -329,6 +346,7 @@ void list_members(Archive&& a, Of<RunResult> auto& r) {
   if (a.has("methods", !r.methods.empty())) a("methods", r.methods);
   if (a.has("method", r.row_method.has_value())) a("method", r.row_method);
   if (a.has("live", r.live.has_value())) a("live", r.live);
+  if (a.has("watched", !r.watched.empty())) a("watched", r.watched);
 }
 
 template <class T>

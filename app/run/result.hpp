@@ -280,6 +280,22 @@ struct RunEvent {
   std::int64_t value{0};
 };
 
+/// What the first estimate needs, in seconds of motion, and how much of it is there.
+struct Collecting {
+  double have_s{0.0};
+  double need_s{0.0};
+};
+
+/// An alarm of [alarm]: what it watches and whether it is raised.
+struct WatchState {
+  std::string name;  ///< "coulomb_below", "drift", "fault_clipping", ...
+  bool active{false};
+  std::optional<double> value;  ///< as last seen; absent: not known yet, or not a number
+  std::optional<double> limit;
+  std::string unit;
+  std::optional<double> since_s;  ///< raised at, from the beginning of the record
+};
+
 /// How a live run kept up. Times from a frame's stamp to its result.
 struct LiveFigures {
   std::string state;  ///< "waiting", "identifying", "degraded", "fault" or "ended"
@@ -298,7 +314,8 @@ struct LiveFigures {
   bool recording{false};
   std::uint64_t recorded_bytes{0};
   std::uint64_t records_lost{0};
-  std::uint64_t publish_failures{0};  ///< how often live.json could not be written
+  std::uint64_t publish_failures{0};       ///< how often live.json could not be written
+  std::optional<Collecting> collecting{};  ///< until the first estimate
 };
 
 /// A bin of the histogram of lateness, with how many frames were so late.
@@ -345,6 +362,7 @@ struct RunResult {
   DataFaults faults;
   std::optional<Magnitudes> magnitudes;  ///< of a truck record; in no file
   std::optional<LiveFigures> live;
+  std::vector<WatchState> watched;    ///< of a live run: the alarms of its configuration
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out
   Evidence evidence;                  ///< of an explanation
   // Of the method of wavelet rows.

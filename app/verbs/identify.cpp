@@ -185,6 +185,9 @@ struct IdentifyFlags : RunFlags {
   LiveOptions live;
   std::string blackbox;
   std::string live_file;
+  std::string serve;
+  std::string serve_token_file;
+  std::string prom_file;
   bool no_blackbox{false};
   bool any_live_flag{false};
 };
@@ -200,8 +203,9 @@ void print_result(const IdentifyFlags& options, const RunResult& result,
 void check_live_flags(const IdentifyFlags& options, SourceKind kind) {
   if (options.any_live_flag && kind != SourceKind::kInterface)
     throw UsageError{fmt::format(
-        "{}: is a record; --duration, --publish-every, --live-file, --read-every, --blackbox, "
-        "--no-blackbox and --realtime-priority are for an interface",
+        "{}: is a record; --duration, --publish-every, --live-file, --serve, --serve-token-file, "
+        "--prom-file, --read-every, --blackbox, --no-blackbox and --realtime-priority are for an "
+        "interface; `dampline replay` serves a record",
         options.source.path)};
   if (options.no_blackbox && !options.blackbox.empty())
     throw UsageError{"--blackbox and --no-blackbox exclude each other"};
@@ -219,13 +223,16 @@ Identified find(const IdentifyFlags& options, const Config& config, SourceKind k
   const bool progress = options.show_progress();
   if (kind != SourceKind::kInterface)
     return identify_source(config, options.source, kind, progress);
-  return identify_live(config, options.source.path, options.live,
-                       {place, blackbox_of(options, place), options.live_file, progress});
+  return identify_live(
+      config, options.source.path, options.live,
+      {place, blackbox_of(options, place), options.live_file, options.prom_file, progress});
 }
 
 Config config_of(const IdentifyFlags& options) {
   Config config = options.load();
   if (!options.methods.empty()) config.estimate.methods = options.methods;
+  if (!options.serve.empty()) config.serve.address = options.serve;
+  if (!options.serve_token_file.empty()) config.serve.token_file = options.serve_token_file;
   return config;
 }
 
@@ -327,6 +334,12 @@ void add_live_flags(CLI::App& verb, IdentifyFlags& options) {
             ->capture_default_str(),
         verb.add_option("--live-file", options.live_file,
                         "keep a copy of live.json at this path as well, the same for every run"),
+        verb.add_option("--serve", options.serve,
+                        "HOST:PORT of a live page, metrics and events: 127.0.0.1:9464"),
+        verb.add_option("--serve-token-file", options.serve_token_file,
+                        "file with the token of readers; an address beyond this machine needs it"),
+        verb.add_option("--prom-file", options.prom_file,
+                        "keep the metrics in this file as well, for node_exporter: NAME.prom"),
         verb.add_option("--read-every", live.read_every_s,
                         "s between two looks at the bus: fewer wake-ups, later results; 0: as "
                         "frames arrive")

@@ -202,7 +202,7 @@ TEST_F(LiveRunTest, StopsOnASignalAndRotatesOnAnother) {
   Silent source{std::make_unique<Paced>(simulated())};
   int turns = 0;
   const Identified found =
-      run(source, {.realtime_priority = 0}, {.turn = [&](LiveState, std::uint64_t, std::int64_t) {
+      run(source, {.realtime_priority = 0}, {.turn = [&](const LiveTurn&) {
             if (++turns == 3) ::raise(SIGHUP);
             if (turns == 30) ::raise(SIGTERM);
           }});

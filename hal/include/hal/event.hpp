@@ -31,6 +31,8 @@ enum class EventKind : std::uint8_t {
   kEdgesLost = 23,         ///< value: edges that the kernel had to drop
   kPublishFailed = 24,     ///< live.json could not be written; value: errno
   kPublishResumed = 25,    ///< value: how often it could not be written in between
+  kAlarmRaised = 26,       ///< line: which of [alarm], in its order; value: what was seen, rounded
+  kAlarmCleared = 27,      ///< the same
 };
 
 /// One event. Plain: it is handed between threads and stored as it is.
