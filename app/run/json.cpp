@@ -383,8 +383,8 @@ Json parameter_json(std::string_view name, const Estimate& estimate, std::string
 std::string to_json(const RunResult& result) {
   Json json;
   list_members(Put{json}, result);
-  // Of a run that has ended the explanation is a file of its own.
-  if (result.live && result.live->state != "ended" && !result.evidence.explanation.empty())
+  // Beside parameters.json the explanation is a file of its own.
+  if (result.origin.written_ns && !result.evidence.explanation.empty())
     json["explanation"] = Json::parse(result.evidence.explanation, nullptr, false);
   return json_text(json);
 }

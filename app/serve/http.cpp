@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <microhttpd.h>
 #include <nettle/memops.h>
-#include <poll.h>
+#include <sys/select.h>
 
 #include <algorithm>
 #include <array>
@@ -106,7 +106,7 @@ struct HttpServer::Callbacks {
 };
 
 HttpServer::HttpServer(const HttpSettings& settings) : settings_{settings} {
-  unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME;
+  unsigned flags = MHD_ALLOW_SUSPEND_RESUME;
   if (settings_.address.is_ipv6()) flags |= MHD_USE_IPv6;
   const auto* address = reinterpret_cast<const sockaddr*>(&settings_.address.socket);
   errno = 0;
@@ -156,10 +156,26 @@ void HttpServer::turn(std::chrono::milliseconds most, int wake) {
   MHD_UNSIGNED_LONG_LONG due_ms = 0;
   auto wait_ms = static_cast<MHD_UNSIGNED_LONG_LONG>(most.count());
   if (MHD_get_timeout(daemon_, &due_ms) == MHD_YES) wait_ms = std::min(wait_ms, due_ms);
-  const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
-  std::array<pollfd, 2> files{{{info->epoll_fd, POLLIN, 0}, {wake, POLLIN, 0}}};
-  static_cast<void>(::poll(files.data(), files.size(), static_cast<int>(wait_ms)));
-  MHD_run(daemon_);
+  // Not by epoll: there the library overlooks a reader that goes in the middle of a request.
+  fd_set readable;
+  fd_set writable;
+  fd_set failed;
+  FD_ZERO(&readable);
+  FD_ZERO(&writable);
+  FD_ZERO(&failed);
+  int last = wake;
+  MHD_get_fdset2(daemon_, &readable, &writable, &failed, &last, FD_SETSIZE);
+  last = std::max(last, wake);
+  FD_SET(wake, &readable);
+  constexpr long kUsPerMs = 1000;
+  timeval wait{static_cast<time_t>(wait_ms / 1000),
+               static_cast<suseconds_t>(wait_ms % 1000) * kUsPerMs};
+  if (::select(last + 1, &readable, &writable, &failed, &wait) < 0) {
+    FD_ZERO(&readable);
+    FD_ZERO(&writable);
+    FD_ZERO(&failed);
+  }
+  MHD_run_from_select(daemon_, &readable, &writable, &failed);
 }
 
 int HttpServer::answer(const Request& request) {

@@ -8,6 +8,7 @@
 #include "app/live/acquisition.hpp"
 #include "app/live/live_explainer.hpp"
 #include "app/record/frames.hpp"
+#include "app/serve/tap.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "sim_hw/simulated_source.hpp"
 #include "sim_hw/simulation.hpp"
@@ -53,13 +54,18 @@ TEST(AcquisitionHeap, IsNotTouchedByAHundredThousandSamples) {
   const drivers::SystemClock clock;
   ExplainRun run{{}, {can_channels({}).channels, {}}};
   LiveExplainer explainer{{}, run};
+  MotionTap tap;  // as where a server shows the run
+  run.watch([&](const Sample& sample, const UpdateResult& result) { tap.take(sample, result); });
   AcquisitionConfig config;
   config.publish_interval_ns = 2'000'000;  // many snapshots
   const auto acquisition = std::make_unique<Acquisition>(source, clock, run, config);
   RecordItem item;
+  Motion motion;
+  std::uint64_t moved = 0;
   const auto step = [&] {
     const bool more = acquisition->step();
     while (acquisition->items().pop(item)) continue;
+    while (acquisition->samples() % 2 == 0 && tap.pop(motion)) ++moved;
     return more;
   };
   // Samples wait 24 s for the guards before the core touches its memory.
@@ -76,6 +82,8 @@ TEST(AcquisitionHeap, IsNotTouchedByAHundredThousandSamples) {
   EXPECT_EQ(after.minor - before.minor, 0U);
   EXPECT_EQ(after.major - before.major, 0U);
   EXPECT_GT(acquisition->samples(), 110'000U);
+  EXPECT_GT(moved, 90'000U);
+  EXPECT_EQ(tap.lost(), 0U);
   EXPECT_TRUE(acquisition->status().take());
   EXPECT_TRUE(acquisition->status().front().view.snapshot.valid);
 }

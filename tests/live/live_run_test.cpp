@@ -166,9 +166,9 @@ TEST_F(LiveRunTest, PublishesOnTheWayAndTellsWhenTheSignalIsLost) {
   std::vector<RunResult> published;
   bool identifying = false;
   bool degraded = false;  // silent for more than a second
-  const auto turn = [&](LiveState state, std::uint64_t, std::int64_t) {
-    identifying = identifying || state == LiveState::kIdentifying;
-    degraded = identifying && state == LiveState::kDegraded;
+  const auto turn = [&](const LiveTurn& now) {
+    identifying = identifying || now.state == LiveState::kIdentifying;
+    degraded = identifying && now.state == LiveState::kDegraded;
     if (degraded) ::raise(SIGTERM);
   };
   const Identified found =
@@ -201,11 +201,10 @@ TEST_F(LiveRunTest, EndsAfterItsDuration) {
 TEST_F(LiveRunTest, StopsOnASignalAndRotatesOnAnother) {
   Silent source{std::make_unique<Paced>(simulated())};
   int turns = 0;
-  const Identified found =
-      run(source, {.realtime_priority = 0}, {.turn = [&](const LiveTurn&) {
-            if (++turns == 3) ::raise(SIGHUP);
-            if (turns == 30) ::raise(SIGTERM);
-          }});
+  const Identified found = run(source, {.realtime_priority = 0}, {.turn = [&](const LiveTurn&) {
+                                 if (++turns == 3) ::raise(SIGHUP);
+                                 if (turns == 30) ::raise(SIGTERM);
+                               }});
   EXPECT_EQ(sink_.rotations, 1);
   EXPECT_EQ(found.result.parameters.at(0).name, "coulomb");
 }

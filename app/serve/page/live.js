@@ -26,6 +26,7 @@ function quantity(value, std, unit) {
   if (!isNumber(value)) return "not known";
   let factor = 1, name = unit;
   if (unit === "N" && Math.abs(value) >= 2e3) [factor, name] = [1e-3, "kN"];
+  if (unit === "m/s") [factor, name] = [1e3, "mm/s"];
   if (unit === "N/m" && Math.abs(value) >= 1e5) [factor, name] = [1e-6, "MN/m"];
   const v = value * factor, s = std * factor;
   if (!(s > 0)) return Number(v.toPrecision(4)) + " " + name;
@@ -133,8 +134,14 @@ function drawDensities(list) {
 
 const motion = {t: [], y: [], v: []};
 
-function takeMotion(more, whole) {
-  for (const key of ["t", "y", "v"]) motion[key] = whole ? more[key] : motion[key].concat(more[key]);
+// `anew`: after a connection was made; else what is known already is passed over.
+function takeMotion(more, anew) {
+  const known = anew || !motion.t.length ? -Infinity : motion.t[motion.t.length - 1];
+  const first = more.t.findIndex(t => t > known);
+  for (const key of ["t", "y", "v"]) {
+    const fresh = first < 0 ? [] : more[key].slice(first);
+    motion[key] = anew ? fresh : motion[key].concat(fresh);
+  }
   const last = motion.t[motion.t.length - 1];
   const from = motion.t.findIndex(t => t >= last - kShownS);
   if (from > 0) for (const key of ["t", "y", "v"]) motion[key] = motion[key].slice(from);
@@ -151,20 +158,35 @@ const kUnits = {deflection_m: ["deflection", "mm", 1e3], velocity_mps: ["velocit
 const range = ([low, high], [name, unit, factor]) =>
   `${name} ${Number((low * factor).toPrecision(2))} to ${Number((high * factor).toPrecision(2))} ${unit}`;
 
+// The cells that hold something, and two beyond, of each axis.
+function occupied(shades, n) {
+  const box = [[n, 0], [n, 0]];
+  for (let c = 0; c < shades.length; ++c) {
+    if (shades.charCodeAt(c) === 0) continue;
+    [Math.floor(c / n), c % n].forEach((at, k) => {
+      box[k] = [Math.min(box[k][0], at), Math.max(box[k][1], at)];
+    });
+  }
+  return box.map(([first, last]) => first > last ? [0, n - 1] : [Math.max(first - 2, 0), Math.min(last + 2, n - 1)]);
+}
+
 function drawPlane(plane, k) {
   const canvas = byId("plane-" + k), n = plane.cells, ctx = canvas.getContext("2d");
-  const x = kUnits[plane.x], y = kUnits[plane.y];
-  canvas.width = canvas.height = n;
-  const text = plane.shades ? `across: ${range(plane.x_range, x)}; up: ${range(plane.y_range, y)}` : "not enough motion yet";
+  const x = kUnits[plane.x], y = kUnits[plane.y], shades = atob(plane.shades);
+  const [across, up] = occupied(shades, n);
+  const place = ([low, high], cell) => low + (high - low) * cell / n;
+  const shown = (all, [first, last]) => [place(all, first), place(all, last + 1)];
+  const text = plane.shades ? `across: ${range(shown(plane.x_range, across), x)}; up: ${range(shown(plane.y_range, up), y)}` : "not enough motion yet";
   canvas.nextElementSibling.textContent = text;
   canvas.setAttribute("aria-label", `Density of ${y[0]} over ${x[0]}; ${text}`);
-  const ink = colour("blue"), image = ctx.createImageData(n, n);
+  canvas.width = across[1] - across[0] + 1;
+  canvas.height = up[1] - up[0] + 1;
+  const ink = colour("blue"), image = ctx.createImageData(canvas.width, canvas.height);
   const [r, g, b] = [1, 3, 5].map(i => parseInt(ink.slice(i, i + 2), 16));
-  const shades = atob(plane.shades);
-  for (let i = 0; i < shades.length; ++i) {
-    const at = 4 * (Math.floor(i / n) + (n - 1 - i % n) * n);
-    image.data.set([r, g, b, shades.charCodeAt(i)], at);
-  }
+  if (shades)
+    for (let i = across[0]; i <= across[1]; ++i)
+      for (let j = up[0]; j <= up[1]; ++j)
+        image.data.set([r, g, b, shades.charCodeAt(i * n + j)], 4 * ((i - across[0]) + (up[1] - j) * canvas.width));
   ctx.putImageData(image, 0, 0);
 }
 
@@ -249,7 +271,7 @@ function showFigures(live) {
   const rows = [["frames", count(c.frames || 0), "frames"], ["of them used", count(c.frames_processed || 0), "frames_processed"],
     ["dropped by the kernel", count(c.frames_dropped || 0), "frames_dropped"],
     ["missing", count(c.frames_missing || 0), "frames_missing"], ["left out", count(c.frames_excluded || 0), "frames_excluded"]];
-  if (f.state !== undefined) rows.push(
+  if (late.max > 0) rows.push(  // a record has none
     ["lateness, median", ms(late.p50)], ["lateness, 99.9 %", ms(late["p99.9"])], ["lateness, largest", ms(late.max)],
     ["samples late by more than a period", count(f.cycle_slips || 0)],
     ["black box", f.recording ? bytes(f.recorded_bytes) + " written" : "not written"],
@@ -323,7 +345,7 @@ function takeNow(now) {
     byId("progress").value = Math.min(c.have_s / c.need_s, 1);
   }
   byId("raised").replaceChildren(...now.raised.map(name => make("p", "Alarm: " + words(name), {className: "warning"})));
-  byId("behind").textContent = now.shown_s > 0 ?
+  byId("behind").textContent = now.shown_s > 0 && now.state !== "ended" ?
     `${Math.max(0, now.record_s - now.shown_s).toFixed(0)} s behind the bus: so long the guards take to judge a sample.` : "";
   takeMotion(now.motion, fresh);
   fresh = false;
