@@ -110,13 +110,12 @@ HttpServer::HttpServer(const HttpSettings& settings) : settings_{settings} {
   if (settings_.address.is_ipv6()) flags |= MHD_USE_IPv6;
   const auto* address = reinterpret_cast<const sockaddr*>(&settings_.address.socket);
   errno = 0;
-  daemon_ = MHD_start_daemon(flags, 0, nullptr, nullptr, &Callbacks::request, this,
-                             MHD_OPTION_EXTERNAL_LOGGER, &log_nothing, nullptr,
-                             MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_CONNECTION_LIMIT,
-                             kMostConnections, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS,
-                             MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes,
-                             MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_LISTENING_ADDRESS_REUSE,
-                             1U, MHD_OPTION_LISTEN_BACKLOG_SIZE, kBacklog, MHD_OPTION_END);
+  daemon_ = MHD_start_daemon(
+      flags, 0, nullptr, nullptr, &Callbacks::request, this, MHD_OPTION_EXTERNAL_LOGGER,
+      &log_nothing, nullptr, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_CONNECTION_LIMIT,
+      kMostConnections, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS,
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+      MHD_OPTION_LISTEN_BACKLOG_SIZE, kBacklog, MHD_OPTION_END);
   if (daemon_ == nullptr)
     throw RunError{
         fmt::format("cannot serve: {}", errno != 0 ? std::strerror(errno) : "no server")};
