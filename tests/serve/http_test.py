@@ -216,7 +216,9 @@ class Malformed(unittest.TestCase):
 class Alarm(unittest.TestCase):
     def test_is_in_live_json_and_in_the_metrics(self):
         config = pathlib.Path(FOLDER.name) / "alarm.toml"
-        config.write_text("[alarm]\ncoulomb_below_n = 6000.0\ncoulomb_above_n = 6000.0\nhold_s = 0.0\n")
+        started = pathlib.Path(FOLDER.name) / "started"
+        config.write_text("[alarm]\ncoulomb_below_n = 6000.0\ncoulomb_above_n = 6000.0\nhold_s = 0.0\n"
+                          f'on_alarm = ["/usr/bin/touch", "{started}"]\n')
         with Server(DAMPLINE, RECORD, "--speed", "0", "--config", config) as server:
             watched = {w["name"]: w for w in wait_for(lambda: ended(server))["watched"]}
             self.assertTrue(watched["coulomb_below"]["active"])
@@ -225,6 +227,7 @@ class Alarm(unittest.TestCase):
             text = server.get("metrics")[2].decode()
             self.assertIn('\ndampline_alarm{name="coulomb_below"} 1\n', text)
             self.assertIn('\ndampline_alarm{name="coulomb_above"} 0\n', text)
+        self.assertFalse(started.exists())  # a replay starts no program: a run directory may be anybody's
 
 
 if __name__ == "__main__":
