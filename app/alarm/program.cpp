@@ -61,6 +61,7 @@ bool AlarmProgram::start(const AlarmChange& change, double now_s) {
         fmt::format("{:.1f}", now_s)})
     words.push_back(std::move(word));
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const SpawnAttributes attributes;

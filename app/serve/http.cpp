@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "app/error.hpp"
 
@@ -105,7 +106,7 @@ struct HttpServer::Callbacks {
   }
 };
 
-HttpServer::HttpServer(const HttpSettings& settings) : settings_{settings} {
+HttpServer::HttpServer(HttpSettings settings) : settings_{std::move(settings)} {
   unsigned flags = MHD_ALLOW_SUSPEND_RESUME;
   if (settings_.address.is_ipv6()) flags |= MHD_USE_IPv6;
   const auto* address = reinterpret_cast<const sockaddr*>(&settings_.address.socket);
@@ -267,7 +268,7 @@ long HttpServer::fill(Reader& reader, char* out, std::size_t most) {
     return 0;
   }
   const std::size_t count = std::min(most, reader.text->size() - reader.sent);
-  std::memcpy(out, reader.text->data() + reader.sent, count);
+  std::copy_n(reader.text->data() + reader.sent, count, out);
   reader.sent += count;
   return static_cast<long>(count);
 }

@@ -30,7 +30,7 @@ class HttpServer {
   static constexpr unsigned kMostConnections = 320;
 
   /// Listens from now on. Throws RunError when the address cannot be had.
-  explicit HttpServer(const HttpSettings& settings);
+  explicit HttpServer(HttpSettings settings);
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
   ~HttpServer();
@@ -64,8 +64,8 @@ class HttpServer {
   };
   /// One reader of the stream.
   struct Reader {
-    HttpServer* server;
-    MHD_Connection* connection;
+    HttpServer* server{nullptr};
+    MHD_Connection* connection{nullptr};
     std::shared_ptr<const std::string> text;  ///< what it is being sent
     std::size_t sent{0};
     std::uint64_t next{0};  ///< event

@@ -89,9 +89,7 @@ Serving::~Serving() {
   if (wake_ >= 0) ::close(wake_);
 }
 
-void Serving::wake() const noexcept {
-  static_cast<void>(::eventfd_write(wake_, 1));
-}
+void Serving::wake() const noexcept { static_cast<void>(::eventfd_write(wake_, 1)); }
 
 void Serving::publish(const RunResult& result, const std::string& text) {
   {
