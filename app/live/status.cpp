@@ -68,10 +68,12 @@ void describe_live(const LiveStatus& status, const LiveSurroundings& around, Run
 
 Collecting collecting_of(double elapsed_s, std::uint64_t usable_blocks,
                          const Config& config) noexcept {
-  constexpr double kMotionS = 12.0;
-  const double moved_s = Estimator::kBlockS * static_cast<double>(usable_blocks);
-  const double wait_s = config.guards.wait_s;
-  return {std::min(elapsed_s, wait_s) + std::min(moved_s, kMotionS), wait_s + kMotionS};
+  constexpr double kLagS = 4.0;  // of a block behind the samples that make it, at most
+  constexpr double kFewestBlocks = 4.0;
+  const double blocks = std::min(static_cast<double>(usable_blocks), kFewestBlocks);
+  const double before_s = config.guards.wait_s + kLagS;
+  return {std::min(elapsed_s, before_s + Estimator::kBlockS * blocks),
+          before_s + Estimator::kBlockS * kFewestBlocks};
 }
 
 namespace {
