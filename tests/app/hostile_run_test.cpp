@@ -152,7 +152,8 @@ TEST(Program, StartsNoOtherProgramThanTheOneOfAnAlarm) {
             0);
   const std::string symbols = program.read("symbols");
   ASSERT_THAT(symbols, HasSubstr("write"));
-  // posix_spawn() starts what [alarm] on_alarm of a live run names; a record's replay starts nothing.
+  // posix_spawn() starts what [alarm] on_alarm of a live run names; a record's replay starts
+  // nothing.
   for (const char* call :
        {" posix_spawnp", " popen", " system@", " execl", " execvp", " fork", " vfork"})
     EXPECT_THAT(symbols, Not(HasSubstr(call)));
