@@ -70,9 +70,9 @@ class FreeRun {
 
  private:
   struct Rate {
-    double x;
-    double v;
-    std::array<double, kMostMemories> z;
+    double x{0.0};
+    double v{0.0};
+    std::array<double, kMostMemories> z{};
   };
   enum class Mode : std::int8_t { kBack = -1, kStuck = 0, kForth = 1 };
 

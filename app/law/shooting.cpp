@@ -90,6 +90,7 @@ class Shooting {
                                            const VectorXd& by) const;
   bool settle(const VectorXd& unknowns);
   bool descend(VectorXd& unknowns, double enough, double& squares);
+  [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
   Shot judge(const VectorXd& unknowns, double squares);
 
   const LawOf& law_of_;
@@ -327,24 +328,47 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
   return true;
 }
 
+/// Blocks in time, two periods of the motion long where there are enough of them.
+std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts) const {
+  const Index block = std::max<Index>(
+      1, std::min(static_cast<Index>(2.0 * period_s_ / interval_s()), samples_ / kFewestBlocks));
+  std::vector<Sums> out;
+  for (const Linear& l : parts)
+    for (Index from = 0; from < l.left.size(); from += block) {
+      const Index n = std::min(block, l.left.size() - from);
+      const auto slopes = l.by_unknowns.middleRows(from, n);
+      out.push_back({slopes.transpose() * slopes, slopes.transpose() * l.left.segment(from, n),
+                     l.left.segment(from, n).squaredNorm()});
+    }
+  return out;
+}
+
+/// What every kFolds-th block keeps by the unknowns that the others choose.
+double held_out_squares(const Sums& all, const std::vector<Sums>& blocks) {
+  double held_out = 0.0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    MatrixXd products = all.products;
+    VectorXd gradient = all.gradient;
+    for (std::size_t b = fold; b < blocks.size(); b += kFolds) {
+      products -= blocks[b].products;
+      gradient -= blocks[b].gradient;
+    }
+    const VectorXd by = -products.ldlt().solve(gradient);
+    for (std::size_t b = fold; b < blocks.size(); b += kFolds)
+      held_out +=
+          blocks[b].squares + 2.0 * by.dot(blocks[b].gradient) + by.dot(blocks[b].products * by);
+  }
+  return held_out;
+}
+
 Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   Shot out;
   std::vector<Linear> parts;
   if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return out;
   const Index p = unknowns.size();
-  const Index block = std::max<Index>(
-      1, std::min(static_cast<Index>(2.0 * period_s_ / interval_s()), samples_ / kFewestBlocks));
-  std::vector<Sums> blocks;
   std::vector<Linear> clean;
-  for (const Linear& each : parts) {
-    const Linear& l = clean.emplace_back(beside_state(each));
-    for (Index from = 0; from < l.left.size(); from += block) {
-      const Index n = std::min(block, l.left.size() - from);
-      const auto slopes = l.by_unknowns.middleRows(from, n);
-      blocks.push_back({slopes.transpose() * slopes, slopes.transpose() * l.left.segment(from, n),
-                        l.left.segment(from, n).squaredNorm()});
-    }
-  }
+  for (const Linear& each : parts) clean.push_back(beside_state(each));
+  const std::vector<Sums> blocks = blocks_of(clean);
   Sums all{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
   MatrixXd scatter = MatrixXd::Zero(p, p);
   for (const Sums& b : blocks) {
@@ -381,23 +405,10 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
     const VectorXd by = solve(gradient);
     out.covariance += by * by.transpose();
   }
-  double held_out = 0.0;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    MatrixXd products = all.products;
-    VectorXd gradient = all.gradient;
-    for (std::size_t b = fold; b < blocks.size(); b += kFolds) {
-      products -= blocks[b].products;
-      gradient -= blocks[b].gradient;
-    }
-    const VectorXd by = -products.ldlt().solve(gradient);
-    for (std::size_t b = fold; b < blocks.size(); b += kFolds)
-      held_out +=
-          blocks[b].squares + 2.0 * by.dot(blocks[b].gradient) + by.dot(blocks[b].products * by);
-  }
   out.ok = true;
   out.unknowns = unknowns;
   out.nmse = squares / variance_m2_;
-  out.held_out_nmse = held_out / variance_m2_;
+  out.held_out_nmse = held_out_squares(all, blocks) / variance_m2_;
   out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
   out.segment_s = static_cast<double>(length_) * interval_s();
   out.segments = segments_.size();

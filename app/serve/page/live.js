@@ -207,7 +207,7 @@ function showAnswer(live) {
     const value = list[list.length - 1].querySelector(".value");
     Object.assign(value.dataset, {name: p.name, value: p.value, std: p.std, unit: p.unit});
   }
-  tile("worth", kTrust[live.trust] || words(live.trust), live.trust_reasons.join(" "));
+  tile("trust", kTrust[live.trust] || words(live.trust), live.trust_reasons.join(" "));
   byId("answer").replaceChildren(...list);
   byId("answer").dataset.trust = live.trust;
 }
