@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   dampline::app::list_verify_verb(program);
   dampline::app::add_inspect_verb(program, action);
   dampline::app::add_motion_verb(program, action);
+  dampline::app::add_predict_verb(program, action);
   dampline::app::add_replay_verb(program, action);
   dampline::app::add_config_verb(program, action);
   dampline::app::add_completion_verb(program, action);

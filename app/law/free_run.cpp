@@ -340,4 +340,23 @@ void FreeRun::advance(Eigen::Index i, State& state) const noexcept {
   }
 }
 
+Course move(const Law& law, const Input& input, State state) {
+  constexpr double kFarthestM = 1e6;
+  const FreeRun run{law, input};
+  const Eigen::Index count = input.size();
+  Course out{false, Eigen::VectorXd{count}, Eigen::VectorXd{count}};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (i > 0) run.advance(i - 1, state);
+    if (!(std::abs(state.deflection_m) < kFarthestM)) {
+      out.deflection_m.conservativeResize(i);
+      out.velocity_mps.conservativeResize(i);
+      return out;
+    }
+    out.deflection_m[i] = state.deflection_m;
+    out.velocity_mps[i] = state.velocity_mps;
+  }
+  out.whole = true;
+  return out;
+}
+
 }  // namespace dampline::app::law

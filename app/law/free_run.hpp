@@ -99,4 +99,14 @@ class FreeRun {
   int steps_{1};
 };
 
+/// How a law moves.
+struct Course {
+  bool whole{false};  ///< otherwise it ran away, and what follows the last sample is missing
+  Eigen::VectorXd deflection_m;
+  Eigen::VectorXd velocity_mps;
+};
+
+/// From the first sample of the input to its last. Precondition: FreeRun::can(law).
+[[nodiscard]] Course move(const Law& law, const Input& input, State state);
+
 }  // namespace dampline::app::law

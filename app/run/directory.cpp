@@ -24,12 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
 /// What a run writes beside the black box.
-constexpr std::array<std::string_view, 22> kRunFiles{
+constexpr std::array<std::string_view, 23> kRunFiles{
     kMarker,        "parameters.json", "curve.csv",        "densities.csv", "phase.json",
     "state.dls",    "report.html",     "convergence.csv",  "excluded.csv",  "motion.csv",
     "force.csv",    "windows.csv",     "cov.csv",          "term_sets.csv", "events.csv",
     "lateness.csv", "live.json",       "explanation.json", "residual.csv",  "loops.csv",
-    "law.csv",      "prediction.csv"};
+    "law.csv",      "law.json",        "prediction.csv"};
 
 bool is_run_file(const std::string& name) {
   return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end() ||
@@ -279,6 +279,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   if (!result.windows.rows.empty()) directory.write("windows.csv", to_csv(result.windows));
   if (!result.cov.empty()) directory.write("cov.csv", to_csv(result.cov, result.parameters));
   if (!result.term_sets.empty()) directory.write("term_sets.csv", to_csv(result.term_sets));
+  if (!result.law.empty()) directory.write("law.json", result.law);
   stage_evidence(result.evidence, directory);
   directory.write("run.toml", files.run_toml);
 }
@@ -313,6 +314,7 @@ RunFiles read_files(const std::filesystem::path& run) {
   files.result.cov = read_extra(run / "cov.csv", read_cov);
   files.result.term_sets = read_extra(run / "term_sets.csv", read_table<TermSet>);
   files.result.evidence = read_evidence(run);
+  if (std::filesystem::exists(run / "law.json")) files.result.law = read_text(run / "law.json");
   return files;
 }
 

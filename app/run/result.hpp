@@ -365,6 +365,7 @@ struct RunResult {
   std::vector<WatchState> watched;    ///< of a live run: the alarms of its configuration
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out
   Evidence evidence;                  ///< of an explanation
+  std::string law;  ///< law.json as text; empty: there is none that could be moved again
   // Of the method of wavelet rows.
   std::optional<RowMethod> row_method;
   Convergence windows;      ///< the estimates of each window

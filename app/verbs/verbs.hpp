@@ -19,6 +19,7 @@ void add_compare_verb(CLI::App& program, std::function<int()>& action);
 void add_export_verb(CLI::App& program, std::function<int()>& action);
 void add_inspect_verb(CLI::App& program, std::function<int()>& action);
 void add_motion_verb(CLI::App& program, std::function<int()>& action);
+void add_predict_verb(CLI::App& program, std::function<int()>& action);
 void add_replay_verb(CLI::App& program, std::function<int()>& action);
 void add_config_verb(CLI::App& program, std::function<int()>& action);
 void add_completion_verb(CLI::App& program, std::function<int()>& action);

@@ -6,31 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
 #include "app/law/shooting.hpp"
 
 namespace dampline::app::rig {
 namespace {
-
-bool is_inertia(Kind kind) { return kind == Kind::kInertia || kind == Kind::kAcceleration; }
-
-/// Friction whose way over which it builds up is shorter than can be seen.
-bool is_sharp(const Regressor& c, const Scale& scale) {
-  switch (c.kind) {
-    case Kind::kSign:
-      return !is_smooth(c, scale);
-    case Kind::kStop:
-      return !is_memory_travel(c.a, scale);
-    case Kind::kFading:
-    case Kind::kFadingSquare:
-    case Kind::kFadingSlowly:
-    case Kind::kProgressive:
-    case Kind::kProgressiveAbsolute:
-      return true;
-    default:
-      return false;
-  }
-}
 
 std::vector<law::Drive> drives_of(const std::vector<Series>& records) {
   std::vector<law::Drive> out;
@@ -204,21 +185,6 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
 }
 
 }  // namespace
-
-std::optional<law::Law> law_of(const Model& model, const Scale& scale) {
-  if (model.skew_s != 0.0 || model.path.hz > 0.0 || !model.changes.empty() || model.ridge > 0.0)
-    return std::nullopt;
-  law::Law out;
-  for (std::size_t i = 0; i < model.columns.size(); ++i) {
-    const double value = model.fit.theta[static_cast<Eigen::Index>(i)];
-    if (is_inertia(model.columns[i].kind))
-      out.mass_kg += value;
-    else
-      out.terms.push_back({model.columns[i], value, is_sharp(model.columns[i], scale)});
-  }
-  if (!law::FreeRun::can(out)) return std::nullopt;
-  return out;
-}
 
 void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& model,
                       Joint& joint) {

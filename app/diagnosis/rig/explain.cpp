@@ -10,6 +10,7 @@
 
 #include "app/diagnosis/rig/explanation.hpp"
 #include "app/diagnosis/rig/gain.hpp"
+#include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/library.hpp"
 #include "app/diagnosis/rig/regression.hpp"
 #include "app/diagnosis/rig/steps.hpp"
@@ -252,6 +253,7 @@ Explanation explain(const Config& given, const ExplainOptions& options) {
   if (!out.base.fit.ok)
     throw RunError{fmt::format("{}: too little motion to determine the model", records[0].record)};
   judge_gains(found.gains, out);
+  measure_left(out.final, records.front(), out.final.law);
   for (const std::string& path : options.validation)
     out.validation.push_back(validate(
         out, read_series(path, found.config, options.skip_bad_lines, options.reference_column)));

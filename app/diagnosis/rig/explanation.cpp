@@ -224,6 +224,7 @@ app::Explanation conclude(const Explanation& e, RunResult& result) {
   if (!e.convergence.rows.empty()) result.convergence = e.convergence;
   put_final(out, result);
   result.evidence.explanation = to_json(out);
+  result.law = law::to_json(e.final.law);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "app/diagnosis/rig/by_motion.hpp"
 #include "app/diagnosis/rig/describe.hpp"
 #include "app/diagnosis/rig/joint.hpp"
+#include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/remainder.hpp"
 #include "app/diagnosis/rig/steps.hpp"
 #include "app/diagnosis/rig/strokes.hpp"
@@ -169,6 +170,7 @@ Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
   evaluate_columns(s);
   out.terms = terms(s);
   describe(s, joint, out, s.chosen, set, notes);
+  out.law = document_of(out, joint, s.scale);
   return out;
 }
 

@@ -122,6 +122,7 @@ void centre(Series& series) {
   if (low <= 0.0 && high >= 0.0) return;
   const double mean = series.deflection_m.mean();
   series.deflection_m.array() -= mean;
+  series.zero_m = mean;
   series.notes.push_back(
       fmt::format("Zero deflection lies outside the motion, {:.6g} to {:.6g} m: counted from the "
                   "mean, {:.6g} m.",
@@ -221,6 +222,7 @@ Series read_series(const std::string& path, const Config& config, bool skip_bad_
   out.record = path;
   out.notes = record.notes;
   out.faults = record.faults.list;
+  out.force_sign = record.force_sign;
   Clock clock{record.name, measure_interval_s(record)};
   const bool measured = record.open()->has_velocity();
   core::Survey survey{1.0 / clock.interval_s(), measured};

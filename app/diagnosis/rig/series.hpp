@@ -45,6 +45,8 @@ struct Series {
   Eigen::VectorXd left_out;     ///< not 0: takes no part in a fit or its error; empty: all do
   double noise_m{0.0};          ///< of the deflection, rms
   Mode path;                    ///< that a force passes before it is measured
+  double zero_m{0.0};           ///< of the record's deflection, where this one's is 0
+  double force_sign{1.0};       ///< -1: the record's force was turned
   double start_m{0.0};          ///< slip of all friction elements at the first sample
 
   [[nodiscard]] Eigen::Index size() const { return force_n.size(); }
