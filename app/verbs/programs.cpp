@@ -2,12 +2,14 @@
 #include "app/verbs/programs.hpp"
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "app/error.hpp"
 
@@ -16,7 +18,11 @@ namespace {
 
 /// `target` is what builds the program.
 int become(const std::string& name, const char* target, char** arguments) {
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  // The kernel says what it started also where /proc is not mounted.
+  const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  std::error_code error;
+  const auto folder =
+      std::filesystem::canonical(started != nullptr ? started : arguments[0], error).parent_path();
   for (const std::string& place : {name, "../libexec/dampline/" + name})
     execv((folder / place).c_str(), arguments);
   throw RunError{
