@@ -77,6 +77,9 @@ TEST_F(Schema, HoldsForARig) {
   expect_success("explain rig.csv --quiet --no-report --out e --validate other.csv");
   expect_valid("e/parameters.json");
   expect_valid("e/explanation.json");
+  expect_valid("e/law.json");
+  expect_refused("e/law.json", "no covariance",
+                 [](nlohmann::json& json) { json.erase("covariance"); });
   expect_success("explain rig.csv other.csv --quiet --no-report --out both");
   expect_valid("both/parameters.json");
   expect_valid("both/explanation.json");

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// The program's `predict`: a law found from one record moves another, whose motion is integrated
+// here in steps of a fortieth.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/app/program.hpp"
+
+namespace dampline::app {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double kIntervalS = 0.004;
+constexpr int kSamples = 7500;
+constexpr int kFine = 40;
+constexpr double kNoiseM = 3e-6;
+
+double force_at(double t, double phase) {
+  double out = 0.0;
+  for (int tone = 0; tone < 12; ++tone)
+    out += std::sin((2.0 + 5.3 * tone) * t + phase * tone + 0.3 * tone * tone);
+  return 18.0 * out;
+}
+
+/// A mass of 20 kg on a hardening spring with viscous damping: time_s, deflection_m, force_n.
+std::string record(double phase, bool with_motion) {
+  const double h = kIntervalS / kFine;
+  const auto accel = [&](double t, double x, double v) {
+    return (force_at(t, phase) - 60.0 * v - 4e4 * x - 3e8 * x * x * x) / 20.0;
+  };
+  std::mt19937 random{7};
+  std::normal_distribution<double> noise{0.0, kNoiseM};
+  std::string out = with_motion ? "time_s,deflection_m,force_n\n" : "time_s,force_n\n";
+  double x = 0.0;
+  double v = 0.0;
+  for (int i = 0; i < kSamples * kFine; ++i) {
+    const double t = i * h;
+    if (i % kFine == 0)
+      out += with_motion
+                 ? fmt::format("{:.6f},{:.9g},{:.9g}\n", t, x + noise(random), force_at(t, phase))
+                 : fmt::format("{:.6f},{:.9g}\n", t, force_at(t, phase));
+    const double a = accel(t, x, v);
+    const double b = accel(t + 0.5 * h, x + 0.5 * h * v, v + 0.5 * h * a);
+    const double c = accel(t + 0.5 * h, x + 0.5 * h * (v + 0.5 * h * a), v + 0.5 * h * b);
+    const double d = accel(t + h, x + h * (v + 0.5 * h * b), v + h * c);
+    x += h * v + h * h / 6.0 * (a + b + c);
+    v += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+  }
+  return out;
+}
+
+class Predict : public testing::Test {
+ protected:
+  void explain() const {
+    program_.write("train.csv", record(0.7, true));
+    const auto found = program_.run("explain train.csv --out found --no-report --quiet");
+    ASSERT_EQ(found.code, 0) << found.error;
+  }
+  [[nodiscard]] json predict(const std::string& arguments) const {
+    const auto out = program_.run("predict found --json --force --out p.csv " + arguments);
+    EXPECT_EQ(out.code, 0) << out.error;
+    return json::parse(out.output);
+  }
+  /// One column of a table.
+  [[nodiscard]] std::vector<double> column(const std::string& file, std::size_t at) const {
+    std::ifstream stream{program_.path(file)};
+    std::string line;
+    std::getline(stream, line);
+    std::vector<double> out;
+    while (std::getline(stream, line)) {
+      std::size_t from = 0;
+      for (std::size_t c = 0; c < at; ++c) from = line.find(',', from) + 1;
+      out.push_back(std::stod(line.substr(from)));
+    }
+    return out;
+  }
+  Program program_;
+};
+
+TEST_F(Predict, MovesAMassUnderAForceThatItNeverSaw) {
+  explain();
+  program_.write("other.csv", record(2.9, true));
+  const json moved = predict("--input other.csv --free-run").at("errors").at(0);
+  EXPECT_EQ(moved.at("quantity"), "deflection_m");
+  EXPECT_LT(moved.at("rms"), 2.0 * kNoiseM) << "half of it is the measured deflection's own noise";
+  EXPECT_LT(moved.at("nmse"), 1e-4);
+  EXPECT_GT(moved.at("within_two_deviations"), 0.9);
+  const json forced = predict("--input other.csv").at("errors").at(0);
+  EXPECT_EQ(forced.at("quantity"), "force_n");
+  EXPECT_LT(forced.at("nmse"), 1e-2);
+}
+
+TEST_F(Predict, NeedsNoMoreThanTheForce) {
+  explain();
+  program_.write("force.csv", record(2.9, false));
+  const json out = predict("--input force.csv --free-run");
+  EXPECT_TRUE(out.at("errors").empty());
+  EXPECT_THAT(out.at("notes").dump(), HasSubstr("at rest"));
+  program_.write("other.csv", record(2.9, true));
+  const std::vector<double> moved = column("p.csv", 1);
+  const std::vector<double> truth = column("other.csv", 1);
+  ASSERT_EQ(moved.size(), truth.size());
+  double left = 0.0;
+  for (std::size_t i = 0; i < moved.size(); ++i) left += std::pow(moved[i] - truth[i], 2);
+  EXPECT_LT(std::sqrt(left / static_cast<double>(moved.size())), 2.0 * kNoiseM);
+}
+
+TEST_F(Predict, TenLinesOfPythonMoveTheSameLaw) {
+  if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)  // NOLINT(cert-env33-c)
+    GTEST_SKIP() << "python3-numpy is not installed";
+  explain();
+  program_.write("force.csv", record(2.9, false));
+  static_cast<void>(predict("--input force.csv --free-run"));
+  std::ifstream guide{DAMPLINE_SOURCE_DIR "/app/docs/guide.md"};
+  const std::string text{std::istreambuf_iterator<char>{guide}, {}};
+  const std::size_t begin = text.find("    import json, numpy as np\n");
+  ASSERT_NE(begin, std::string::npos);
+  std::string script;
+  std::size_t at = begin;
+  while (text.compare(at, 4, "    ") == 0) {
+    const std::size_t end = text.find('\n', at) + 1;
+    script += text.substr(at + 4, end - at - 4);
+    at = end;
+  }
+  program_.write("script.py", script + "np.savetxt('x.csv', x, header='x', comments='')\n");
+  ASSERT_EQ(std::system(("cd '" + program_.path("").string() +  // NOLINT(cert-env33-c)
+                         "' && /usr/bin/python3 script.py")
+                            .c_str()),
+            0);
+  const std::vector<double> theirs = column("x.csv", 0);
+  const std::vector<double> ours = column("p.csv", 1);
+  ASSERT_EQ(theirs.size(), ours.size());
+  double left = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    left += std::pow(theirs[i] - ours[i], 2);
+    all += std::pow(ours[i], 2);
+  }
+  EXPECT_LT(left / all, 1e-4) << "the script takes the force as straight between samples";
+}
+
+TEST_F(Predict, RefusesWhatCannotBePredicted) {
+  program_.write("damper.csv", [] {
+    std::string out = "time_s,deflection_m,force_n\n";
+    for (int i = 0; i < 4000; ++i) {
+      const double t = 0.004 * i;
+      const double v = 0.05 * std::cos(9.0 * t) + 0.03 * std::cos(23.0 * t);
+      const double x = 0.05 / 9.0 * std::sin(9.0 * t) + 0.03 / 23.0 * std::sin(23.0 * t);
+      out += fmt::format("{:.6f},{:.9g},{:.9g}\n", t, x, 300.0 * v + 0.01 * std::sin(977.0 * t));
+    }
+    return out;
+  }());
+  ASSERT_EQ(program_.run("explain damper.csv --out found --no-report --quiet").code, 0);
+  const auto moved = program_.run("predict found --input damper.csv --free-run");
+  EXPECT_EQ(moved.code, 2);
+  EXPECT_THAT(moved.error, HasSubstr("damper"));
+  EXPECT_LT(predict("--input damper.csv").at("errors").at(0).at("nmse"), 1e-3);
+  ASSERT_EQ(program_.run("identify damper.csv --out plain --no-report --quiet").code, 0);
+  const auto lawless = program_.run("predict plain --input damper.csv");
+  EXPECT_EQ(lawless.code, 1);
+  EXPECT_THAT(lawless.error, HasSubstr("law.json"));
+  program_.write("found/law.json", "{}");
+  const auto broken = program_.run("predict found --input damper.csv");
+  EXPECT_EQ(broken.code, 1);
+  EXPECT_THAT(broken.error, HasSubstr("law.json: schema"));
+}
+
+}  // namespace
+}  // namespace dampline::app
