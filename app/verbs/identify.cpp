@@ -20,6 +20,7 @@
 
 #include "app/config/config.hpp"
 #include "app/diagnosis/rig/explain.hpp"
+#include "app/diagnosis/truck/document.hpp"
 #include "app/diagnosis/truck/explanation.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
@@ -104,6 +105,10 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
                                            options.show_progress()});
   RunResult result = found.identified;
   const Explanation explanation = conclude(found, result);
+  law::Document law =
+      document_of(found, result.parameters, estimator_config(config).moving_mass_kg);
+  law.record = options.records.front();
+  result.law = to_json(law);
   return {summarize(explanation),
           make_files(config, std::move(result), found.inputs, std::move(found.state))};
 }

@@ -10,6 +10,7 @@
 
 #include "app/error.hpp"
 #include "app/predict/rig.hpp"
+#include "app/predict/truck.hpp"
 #include "app/verbs/verbs.hpp"
 #include "drivers/text/quote.hpp"
 
@@ -48,6 +49,8 @@ law::Document load_law(const std::filesystem::path& run) {
 Prediction predict(const PredictFlags& flags) {
   const law::Document document = load_law(flags.run);
   const Config config = flags.config.empty() ? Config{} : load_config(flags.config);
+  if (document.subject == law::Subject::kTruck)
+    return predict_frame(document, config, {flags.options.input, flags.options.skip_bad_lines});
   return flags.free_run ? predict_motion(document, config, flags.options)
                         : predict_force(document, config, flags.options);
 }
@@ -74,7 +77,7 @@ void add_predict_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("RUN", flags->run, "run directory of explain, or its law.json")->required();
   verb->add_option("--input", flags->options.input,
                    "a rig's record: its motion, from which the force is predicted; with --free-run "
-                   "its force, which moves the mass")
+                   "its force, which moves the mass; or a truck's, whose wheelsets move the frame")
       ->required();
   verb->add_flag("--free-run", flags->free_run, "a driven mass: predict its motion by its force");
   verb->add_option("--out", flags->out,
