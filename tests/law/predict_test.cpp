@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -75,7 +76,8 @@ class Predict : public testing::Test {
   [[nodiscard]] std::vector<double> column(const std::string& file, std::size_t at) const {
     std::ifstream stream{program_.path(file)};
     std::string line;
-    std::getline(stream, line);
+    while (std::getline(stream, line) && line.starts_with('#')) {
+    }
     std::vector<double> out;
     while (std::getline(stream, line)) {
       std::size_t from = 0;
@@ -83,6 +85,14 @@ class Predict : public testing::Test {
       out.push_back(std::stod(line.substr(from)));
     }
     return out;
+  }
+  [[nodiscard]] std::size_t truth_column(const std::string& name) const {
+    std::ifstream stream{program_.path("truth.csv")};
+    std::string line;
+    while (std::getline(stream, line) && line.starts_with('#')) {
+    }
+    const std::string before = line.substr(0, line.find(name));
+    return static_cast<std::size_t>(std::count(before.begin(), before.end(), ','));
   }
   Program program_;
 };
@@ -147,6 +157,59 @@ TEST_F(Predict, TenLinesOfPythonMoveTheSameLaw) {
     all += std::pow(ours[i], 2);
   }
   EXPECT_LT(left / all, 1e-4) << "the script takes the force as straight between samples";
+}
+
+/// The simulator's own frame, on wheelsets that the law never saw; what is left is sensors and
+/// rounding, as explain has them.
+TEST_F(Predict, MovesATrucksFrameByItsWheelsets) {
+  for (const char* effect :
+       {"", "--effect presliding_hysteresis", "--effect progressive_friction"}) {
+    const std::string simulate = fmt::format("simulate --quiet --force {} ", effect);
+    ASSERT_EQ(program_.run(simulate + "--duration 120 --seed 5 --out train.log").code, 0);
+    ASSERT_EQ(
+        program_.run(simulate + "--duration 60 --seed 9 --out other.log --truth truth.csv").code,
+        0);
+    const auto found = program_.run("explain train.log --out found --force --no-report --quiet");
+    ASSERT_EQ(found.code, 0) << found.error;
+    const json law = json::parse(program_.read("found/law.json"));
+    EXPECT_EQ(law.at("subject"), "truck");
+    EXPECT_EQ(law.at("mass_kg"), 0.5 * 37200.0);
+    const json moved = predict("--input other.log").at("errors").at(0);
+    EXPECT_EQ(moved.at("quantity"), "frame_accel_mps2");
+    const json explained = json::parse(program_.read("found/explanation.json"));
+    EXPECT_LT(moved.at("nmse"), 1.5 * explained.at("final").at("held_out_nmse").get<double>())
+        << effect;
+    EXPECT_GT(moved.at("within_two_deviations"), 0.9) << effect;
+    // The deflection is in no record: the simulator tells it.
+    std::vector<double> apart = column("p.csv", 1);
+    const std::vector<double> truth = column("truth.csv", truth_column("deflection_m"));
+    ASSERT_LE(apart.size(), truth.size());
+    const std::size_t settled = 1500;
+    double mean = 0.0;
+    for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= truth[i];
+    for (std::size_t i = settled; i < apart.size(); ++i) mean += apart[i];
+    mean /= static_cast<double>(apart.size() - settled);
+    double left = 0.0;
+    double all = 0.0;
+    for (std::size_t i = settled; i < apart.size(); ++i) {
+      left += std::pow(apart[i] - mean, 2);
+      all += std::pow(truth[i], 2);
+    }
+    EXPECT_LT(left / all, 0.05) << effect << ": where friction holds it, it rests elsewhere";
+  }
+}
+
+TEST_F(Predict, NamesWhatATrucksLawDoesNotHold) {
+  ASSERT_EQ(
+      program_.run("simulate --quiet --effect backlash --duration 120 --seed 5 --out train.log")
+          .code,
+      0);
+  ASSERT_EQ(program_.run("explain train.log --out found --no-report --quiet").code, 0);
+  EXPECT_THAT(predict("--input train.log").at("notes").dump(), HasSubstr("backlash"));
+  program_.write("rig.csv", "time_s,deflection_m,force_n\n0,0,0\n0.01,0.1,3\n0.02,0.2,4\n");
+  const auto rig = program_.run("predict found --input rig.csv");
+  EXPECT_EQ(rig.code, 2);
+  EXPECT_THAT(rig.error, HasSubstr("no truck's record"));
 }
 
 TEST_F(Predict, RefusesWhatCannotBePredicted) {

@@ -54,6 +54,7 @@ TEST_F(Schema, HoldsForATruck) {
   expect_success("explain run.log --quiet --no-report --out e --validate run.log");
   expect_valid("e/parameters.json");
   expect_valid("e/explanation.json");
+  expect_valid("e/law.json");
   EXPECT_THAT(program_.read("e/explanation.json"), HasSubstr("\"backlash\""));
 }
 

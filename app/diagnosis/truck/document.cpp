@@ -144,7 +144,7 @@ law::Document document_of(const Explained& explained, const std::vector<Paramete
     const effect::Candidate& c = e.model.effect[e.base_count + i];
     if (!add_effect(w, c, plain))
       w.document().not_in_it.push_back(
-          fmt::format("{}: no term of the law", effect::name_of(c.effect)));
+          fmt::format("{}: found, and no function of the law", effect::name_of(c.effect)));
   }
   if (explained.drifts)
     w.document().not_in_it.emplace_back("time_drift: a parameter changed over the record");
