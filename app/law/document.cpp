@@ -340,7 +340,7 @@ Document read_document(std::string_view text, const std::string& origin) {
     throw RunError{fmt::format("{}: is no JSON object", origin)};
   const Reader from{std::move(json), origin};
   if (const auto schema = from.get<std::string>("schema"); schema != kSchema)
-    from.fail(fmt::format("schema: found \"{}\", expected \"{}\"", schema, kSchema));
+    from.fail(fmt::format(R"(schema: found "{}", expected "{}")", schema, kSchema));
   Document out;
   out.record = from.get<std::string>("record");
   out.subject = value_in(kSubjects, from.get<std::string>("subject"), from.place() + ": subject");

@@ -367,6 +367,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return out;
   const Index p = unknowns.size();
   std::vector<Linear> clean;
+  clean.reserve(parts.size());
   for (const Linear& each : parts) clean.push_back(beside_state(each));
   const std::vector<Sums> blocks = blocks_of(clean);
   Sums all{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};

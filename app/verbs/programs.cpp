@@ -19,6 +19,7 @@ namespace {
 /// `target` is what builds the program.
 int become(const std::string& name, const char* target, char** arguments) {
   // The kernel says what it started also where /proc is not mounted.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address is what it gives
   const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
   std::error_code error;
   const auto folder =
