@@ -96,8 +96,21 @@ MotionFormat motion_format(const std::string& file) {
   const std::string suffix = std::filesystem::path{file}.extension().string();
   if (file == "-" || suffix == ".csv") return MotionFormat::kCsv;
   if (suffix == ".npy") return MotionFormat::kNpy;
-  if (suffix == ".mat") return MotionFormat::kMat;
-  if (suffix == ".h5" || suffix == ".hdf5") return MotionFormat::kHdf5;
+  const auto has = [&](bool written, const char* package) {
+    if (!written)
+      throw UsageError{
+          fmt::format("--out: found {}, which this program was built without; build it "
+                      "with {}, or name a file that ends in .csv or .npy",
+                      suffix, package)};
+  };
+  if (suffix == ".mat") {
+    has(drivers::writes_mat(), "libmatio-dev");
+    return MotionFormat::kMat;
+  }
+  if (suffix == ".h5" || suffix == ".hdf5") {
+    has(drivers::writes_hdf5(), "libhdf5-dev");
+    return MotionFormat::kHdf5;
+  }
   throw UsageError{
       fmt::format("--out: found {}, expected a name that ends in .csv, .npy, .mat or .h5", file)};
 }

@@ -14,6 +14,8 @@ Outcome<std::unique_ptr<RecordedRows>> open_hdf5(const RowFileConfig& config) {
                              config.path)};
 }
 
+bool writes_hdf5() noexcept { return false; }
+
 Outcome<bool> write_hdf5(const std::string& /*path*/, const ColumnTable& /*table*/) {
   return Failure{Errc::kInvalidConfig,
                  "HDF5 files are what this program was built without; build it with libhdf5-dev"};

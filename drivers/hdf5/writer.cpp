@@ -6,6 +6,8 @@
 
 namespace dampline::drivers {
 
+bool writes_hdf5() noexcept { return true; }
+
 Outcome<bool> write_hdf5(const std::string& path, const ColumnTable& table) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it would print is told by errors here
   const Failure cannot{Errc::kIo, "the HDF5 file cannot be written"};

@@ -14,6 +14,8 @@ Outcome<std::unique_ptr<RecordedRows>> open_mat(const RowFileConfig& config) {
                              config.path)};
 }
 
+bool writes_mat() noexcept { return false; }
+
 Outcome<bool> write_mat(const std::string& /*path*/, const ColumnTable& /*table*/) {
   return Failure{Errc::kInvalidConfig,
                  "MAT files are what this program was built without; build it with libmatio-dev"};

@@ -13,6 +13,8 @@ constexpr std::uint64_t kMostRows = 250'000'000;  // a variable has less than 2 
 
 }  // namespace
 
+bool writes_mat() noexcept { return true; }
+
 Outcome<bool> write_mat(const std::string& path, const ColumnTable& table) {
   if (table.rows > kMostRows)
     return Failure{Errc::kInvalidConfig, "a MAT file holds at most 250,000,000 rows"};

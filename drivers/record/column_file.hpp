@@ -19,6 +19,10 @@ struct ColumnTable {
   std::function<void(std::size_t column, std::span<double> values)> fill;
 };
 
+/// Whether the program was built with their libraries, libmatio and libhdf5.
+[[nodiscard]] bool writes_mat() noexcept;
+[[nodiscard]] bool writes_hdf5() noexcept;
+
 /// Writes each column as a variable of rows x 1 (MATLAB 5), or as a data set (HDF5), to a path that
 /// can be written. Errors: the program was built without the library; the disk is full.
 [[nodiscard]] Outcome<bool> write_mat(const std::string& path, const ColumnTable& table);

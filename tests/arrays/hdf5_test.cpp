@@ -45,6 +45,9 @@ open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
       GTEST_SKIP() << "python3-h5py is not installed";
     if (DAMPLINE_HAS_HDF5 == 0) {
       EXPECT_THAT(program_.run("identify a.h5").error, HasSubstr("built without"));
+      const auto refused = program_.run("motion no_record.csv --out m.h5");
+      EXPECT_EQ(refused.code, 2);
+      EXPECT_THAT(refused.error, HasSubstr("libhdf5-dev")) << "before the record is read";
       GTEST_SKIP() << "built without libhdf5-dev";
     }
   }

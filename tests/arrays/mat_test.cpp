@@ -40,6 +40,9 @@ open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
     if (!shell("/usr/bin/python3 script.py")) GTEST_SKIP() << "python3-scipy is not installed";
     if (DAMPLINE_HAS_MATIO == 0) {
       EXPECT_THAT(program_.run("identify six.mat").error, HasSubstr("built without"));
+      const auto refused = program_.run("motion no_record.csv --out m.mat");
+      EXPECT_EQ(refused.code, 2);
+      EXPECT_THAT(refused.error, HasSubstr("libmatio-dev")) << "before the record is read";
       GTEST_SKIP() << "built without libmatio-dev";
     }
   }
