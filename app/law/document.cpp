@@ -327,6 +327,7 @@ std::string to_json(const Document& d) {
                     {"deflection_zero_m", d.zero_m},
                     {"force_sign", d.force_sign},
                     {"sample_rate_hz", d.sample_rate_hz},
+                    {"filter_hz", known(d.filter_hz)},
                     {"residual",
                      {{"force_n", known(d.residual_n)},
                       {"deflection_m", known(d.residual_m)},
@@ -354,6 +355,7 @@ Document read_document(std::string_view text, const std::string& origin) {
   out.zero_m = from.number("deflection_zero_m");
   out.force_sign = from.number("force_sign") < 0.0 ? -1.0 : 1.0;
   out.sample_rate_hz = from.number("sample_rate_hz");
+  out.filter_hz = from.number_or_0("filter_hz");
   const Reader residual = from.in("residual");
   out.residual_n = residual.number_or_0("force_n");
   out.residual_m = residual.number_or_0("deflection_m");

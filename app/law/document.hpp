@@ -36,6 +36,7 @@ struct Document {
   double zero_m{0.0};          ///< the record's deflection where x is 0
   double force_sign{1.0};      ///< -1: the record's force counts the other way
   double sample_rate_hz{0.0};
+  double filter_hz{0.0};  ///< corner of the test function that the force was seen through; 0: none
   /// What the law leaves of that record, rms: of its force, of its motion when the force alone
   /// moves it; of a truck of the frame's acceleration. 0: not worked out.
   double residual_n{0.0};

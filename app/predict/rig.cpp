@@ -147,6 +147,7 @@ Prediction predict_force(const law::Document& document, const Config& config,
   rig::Series series = rig::read_series(options.input, config, options.skip_bad_lines);
   series.deflection_m.array() += series.zero_m - document.zero_m;
   if (series.force_sign != document.force_sign) series.force_n *= -1.0;
+  if (document.filter_hz > 0.0) series.config.corner_hz = document.filter_hz;
   const std::vector<rig::Regressor> columns = rig::columns_of(document);
   const rig::Rows rows = rig::rows_of(columns, series, 1);
   const Eigen::Index count = rows.values.rows();

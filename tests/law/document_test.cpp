@@ -37,6 +37,7 @@ Document example() {
   out.zero_m = 0.5;
   out.force_sign = -1.0;
   out.sample_rate_hz = 500.0;
+  out.filter_hz = 27.0;
   out.residual_n = 0.1;
   out.residual_m = 1e-6;
   out.not_in_it = {"time_skew: the force was late by 2 ms"};

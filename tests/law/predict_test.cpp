@@ -108,6 +108,7 @@ TEST_F(Predict, MovesAMassUnderAForceThatItNeverSaw) {
   const json forced = predict("--input other.csv").at("errors").at(0);
   EXPECT_EQ(forced.at("quantity"), "force_n");
   EXPECT_LT(forced.at("nmse"), 1e-2);
+  EXPECT_GT(forced.at("within_two_deviations"), 0.9);
 }
 
 TEST_F(Predict, NeedsNoMoreThanTheForce) {

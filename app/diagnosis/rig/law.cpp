@@ -146,6 +146,7 @@ law::Document document_of(const Model& model, const Joint& joint, const Scale& s
 void measure_left(const Model& model, const Series& series, law::Document& out) {
   out.record = series.record;
   out.sample_rate_hz = 1.0 / series.interval_s;
+  if (is_filtered(model.columns)) out.filter_hz = series.config.corner_hz;
   out.zero_m = series.zero_m;
   out.force_sign = series.force_sign;
   const Rows rows = rows_of(model.columns, seen_by(model, series), 1);
