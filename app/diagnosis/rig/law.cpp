@@ -13,8 +13,8 @@ namespace {
 
 using Part = law::Unknown::Part;
 
-constexpr int kMass = -1;
-constexpr int kNone = -2;
+/// Instead of a term's number.
+enum NoTerm : int { kMass = -1, kNone = -2 };
 
 /// Where the model's columns stand in the law.
 std::vector<int> terms_of(const Model& model) {
