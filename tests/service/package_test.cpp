@@ -35,7 +35,8 @@ class Package : public testing::Test {
 
 TEST_F(Package, HoldsWhatAServiceNeedsAndItRuns) {
   EXPECT_EQ(field("Package"), "dampline\n");
-  EXPECT_THAT(field("Version"), MatchesRegex("0\\.1\\.0(~git[0-9]{8}\\.[0-9]{6}\\.[0-9a-f]+)?-1\n"));
+  EXPECT_THAT(field("Version"),
+              MatchesRegex("0\\.1\\.0(~git[0-9]{8}\\.[0-9]{6}\\.[0-9a-f]+)?-1\n"));
   EXPECT_THAT(field("Depends"), HasSubstr("libfmt9"));
   EXPECT_THAT(field("Depends"), Not(HasSubstr("gnuplot")));
   const std::filesystem::path root = folder_.path() / "root";

@@ -32,7 +32,7 @@ struct Model {
   double skew_s{0.0};           ///< the force is late by this
   Mode path;                    ///< that the force passes before it is measured
   FreeRunError free_run;
-  law::Document law;  ///< of a final model: law.json
+  law::Document law;              ///< of a final model: law.json
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
   double floor_noise_share{0.0};  ///< of it, what the noise of the force makes
   /// What is left, over that.
