@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
     return dampline::app::exit_code([&] { return dampline::app::run_verify(argv + 1); });
   if (argc > 1 && dampline::app::asks_for_method(argv + 1))
     return dampline::app::exit_code([&] { return dampline::app::run_method(argv + 1); });
+  if (argc > 1 && dampline::app::is_rank(argv + 1))
+    return dampline::app::exit_code([&] { return dampline::app::run_rank(argv + 1); });
   CLI::App program{
       "Identifies how a freight-car truck dissipates energy, from accelerometers in service"};
   program.name("dampline");
@@ -27,6 +29,8 @@ int main(int argc, char** argv) {
   dampline::app::add_simulate_verb(program, action);
   dampline::app::add_report_verb(program, action);
   dampline::app::add_compare_verb(program, action);
+  dampline::app::add_merge_verb(program, action);
+  dampline::app::add_archive_verb(program, action);
   dampline::app::add_export_verb(program, action);
   dampline::app::list_verify_verb(program);
   dampline::app::add_inspect_verb(program, action);

@@ -156,6 +156,7 @@ def _column(cells):
 _SCALES, _COLUMNS, _SEGMENTS, _MOST_ENTRIES = 5, 21, 8, 28
 _PACKED = _COLUMNS * (_COLUMNS + 1) // 2
 _HEAD_BYTES, _FACTORS_BYTES = 360, 8 * _SCALES * (_PACKED + 1) + 4
+_LIGHT_BYTES = _FACTORS_BYTES - 4 * _SCALES * _PACKED
 _COUNTS = ("samples gaps lost saturated stuck not_finite repeated blocks blocks_excluded blocks_still "
            "rows rows_still").split()
 _WIDTHS_MPS = 1e-3 * np.array([0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0])
@@ -169,7 +170,8 @@ Factors.__doc__ = """Of one stretch: `factor` (5, 21, 21), the upper triangles R
 
 class State:
     """The sufficient statistics of a truck's run: the fields of state.dls by their names, `total`
-    (Factors), and `entries`, a list of Factors, oldest first."""
+    (Factors), `entries`, a list of Factors, oldest first (none of a light state), and `about`, what
+    it is of: vehicle, truck, start_ns, sequence, ... (empty: of version 1)."""
 
     def level(self, moving_mass_kg, sample_rate_hz=None, viscous=False):
         """Parameters as parameters.json has them: a dictionary of Estimate.
@@ -220,7 +222,7 @@ def read_state(path):
     """Reads state.dls. ValueError where it is none, is cut off or damaged, or of another version."""
     with open(path, "rb") as file:
         data = file.read()
-    payload = _check_frame(data, os.fspath(path))
+    version, light, payload = _check_frame(data, os.fspath(path))
     state = State()
     fields = struct.unpack_from("<Qdd8dII8Q8QQQddq12Q", payload)
     state.basis_hash, state.sample_rate_hz, state.velocity_corner_hz = fields[:3]
@@ -229,11 +231,40 @@ def read_state(path):
     state.positive, state.negative = np.array(fields[13:21]), np.array(fields[21:29])
     state.moving, state.sticking, state.sum_squares, state.noise_mps2, state.newest_tick = fields[29:34]
     state.counts = dict(zip(_COUNTS, fields[34:]))
-    if entries > _MOST_ENTRIES or len(payload) != _HEAD_BYTES + (entries + 1) * _FACTORS_BYTES:
+    length = _LIGHT_BYTES if light else _FACTORS_BYTES
+    sums = _HEAD_BYTES + (entries + 1) * length
+    if entries > _MOST_ENTRIES or len(payload) < sums or (version == 1 and len(payload) != sums):
         raise ValueError(f"{path}: a payload of another length than its {entries} entries need")
-    factors = [_factors(payload, _HEAD_BYTES + i * _FACTORS_BYTES) for i in range(entries + 1)]
+    factors = [_factors(payload, _HEAD_BYTES + i * length, light) for i in range(entries + 1)]
     state.total, state.entries = factors[0], factors[1:]
+    state.about = _about(payload[sums:]) if version > 1 else {}
     return state
+
+
+def _about(data):
+    at = 0
+
+    def take(layout):
+        nonlocal at
+        values = struct.unpack_from("<" + layout, data, at)
+        at += struct.calcsize("<" + layout)
+        return values if len(values) > 1 else values[0]
+
+    def text():
+        length = take("I")
+        return take(f"{length}s").decode("utf-8", "replace") if length else ""
+
+    about = {"vehicle": text(), "truck": text()}
+    for name in ("start_ns", "record", "sequence"):
+        about[name] = take("q" if name == "start_ns" else "Q")
+    about["segments"], about["end_ns"], about["load"] = take("I"), take("q"), text()
+    about["moving_mass_kg"] = take("d")
+    for name, unit in (("rate", "Hz"), ("coulomb", "N"), ("stiffness", "N/m")):
+        about[name] = Estimate(*take("2d"), unit)
+    viscous, trust = take("2I")
+    about["viscous"] = bool(viscous)
+    about["trust"] = ("trusted", "model_incomplete", "data_faulty", "not_identified")[trust]
+    return about
 
 
 def _check_frame(data, path):
@@ -241,15 +272,15 @@ def _check_frame(data, path):
         raise ValueError(f"{path}: is no dampline state")
     if len(data) < 44:
         raise ValueError(f"{path}: is cut off after {len(data)} bytes")
-    version, *sizes, _, length = struct.unpack_from("<4IQQ", data, 8)
-    if version != 1 or sizes != [_SCALES, _COLUMNS, _SEGMENTS]:
-        raise ValueError(f"{path}: is of version {version} with sizes {sizes}, expected 1 and "
+    version, kind, *sizes, _, length = struct.unpack_from("<2H3IQQ", data, 8)
+    if version not in (1, 2) or kind > version - 1 or sizes != [_SCALES, _COLUMNS, _SEGMENTS]:
+        raise ValueError(f"{path}: is of version {version} with sizes {sizes}, expected 1 or 2 and "
                          f"{[_SCALES, _COLUMNS, _SEGMENTS]}")
     if len(data) != 44 + length:
         raise ValueError(f"{path}: is cut off or has bytes too many: {len(data)}, expected {44 + length}")
     if _crc32c(data[:-4]) != struct.unpack_from("<I", data, len(data) - 4)[0]:
         raise ValueError(f"{path}: is damaged: its checksum does not fit")
-    return data[40:-4]
+    return version, kind == 1, data[40:-4]
 
 
 def _crc32c(data):
@@ -264,8 +295,9 @@ def _crc32c(data):
     return crc ^ 0xFFFFFFFF
 
 
-def _factors(payload, offset):
-    packed = np.frombuffer(payload, "<f8", _SCALES * _PACKED, offset).reshape(_SCALES, _PACKED)
+def _factors(payload, offset, light):
+    packed = np.frombuffer(payload, "<f4" if light else "<f8", _SCALES * _PACKED, offset)
+    packed = packed.reshape(_SCALES, _PACKED)
     factor = np.zeros((_SCALES, _COLUMNS, _COLUMNS))
     row, column = np.triu_indices(_COLUMNS)
     factor[:, row, column] = packed

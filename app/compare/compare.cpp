@@ -34,22 +34,6 @@ StatisticsHeader basis_of(const std::string& run) {
   return statistics->header;
 }
 
-/// What is another in the statistics; empty: nothing.
-std::string other_basis(const StatisticsHeader& first, const StatisticsHeader& other) {
-  if (first.basis_hash == other.basis_hash) return "";
-  if (first.sample_rate_hz != other.sample_rate_hz)
-    return fmt::format("its nominal sample rate is {:.6g} Hz, expected {:.6g} Hz",
-                       other.sample_rate_hz, first.sample_rate_hz);
-  if (first.velocity_corner_hz != other.velocity_corner_hz)
-    return fmt::format(
-        "its velocity's drift filter has its corner at {} Hz, expected {} Hz; [model] "
-        "velocity_corner_hz states it",
-        other.velocity_corner_hz, first.velocity_corner_hz);
-  if (first.curve_nodes_mps != other.curve_nodes_mps)
-    return "its curve has other nodes ([model] curve_nodes_mps)";
-  return "its anti-aliasing filter, windows or further masses differ ([input.anti_alias], [car])";
-}
-
 std::string kind_text(const RunResult& result) {
   if (result.row_method) return result.kind + "'s (--method wavelet)";
   return result.kind + "'s";
@@ -167,28 +151,6 @@ std::string difference_text(const Difference& d) {
   const QuantityText text = format_quantity(unit.factor * d.value, unit.factor * d.std);
   const std::string size = text.value.starts_with('-') ? text.value : "+" + text.value;
   return fmt::format("{} {} ({:+.2g} %, {:+.1f} std)", size, unit.name, d.percent, d.deviations);
-}
-
-/// Columns as wide as their widest cell.
-std::string columns_text(const std::vector<std::vector<std::string>>& rows) {
-  constexpr std::size_t kBetween = 2;
-  const auto width_of = [](const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-      return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
-    }));
-  };
-  std::vector<std::size_t> widths(rows.empty() ? 0 : rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
-  std::string out;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i)
-      if (widths[i] > 0) line += row[i] + std::string(widths[i] - width_of(row[i]) + kBetween, ' ');
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + "\n";
-  }
-  return out;
 }
 
 }  // namespace

@@ -133,6 +133,7 @@ struct GpioConfig {
 struct RecordLabels {
   std::string vehicle;
   std::string truck;
+  std::string load;
   std::string note;
 };
 

@@ -83,7 +83,7 @@ Identified identify_truck(const Config& config, const SourceOptions& source, Sou
   out.result = run.finish(rate_of(*feed, run), source.path);
   feed->describe(run.frames(), out.result);
   out.inputs = feed->extra_inputs();
-  out.state = run.encoded_state();
+  out.sums = run.statistics();
   return out;
 }
 

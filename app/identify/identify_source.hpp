@@ -48,7 +48,7 @@ class Progress {
 
 struct Identified {
   RunResult result;
-  std::string state;  ///< for state.dls; empty for a rig
+  std::shared_ptr<const Statistics> sums;  ///< null for a rig
   std::vector<InputFile> inputs;
 };
 

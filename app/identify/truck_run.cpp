@@ -9,7 +9,6 @@
 #include "app/error.hpp"
 #include "app/identify/truck_result.hpp"
 #include "app/record/rate.hpp"
-#include "app/run/state.hpp"
 #include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 
@@ -227,9 +226,7 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
     fill_methods(core_->density(), config_.car.moving_mass_kg, last.snapshot.stiffness_npm.value,
                  record, result);
   result.warnings = clipping_.warnings();
-  const auto statistics = std::make_unique<Statistics>();
-  core_->statistics(*statistics);
-  circumstances_ = {last.faults, find_parameter_drift(*statistics, Estimator::kBlockS)};
+  circumstances_ = {last.faults, find_parameter_drift(*statistics(), Estimator::kBlockS)};
   describe_faults_of_all(core_->guard(), last.faults, circumstances_.drift, record, rate_hz_,
                          result);
   describe_alarms(last.alarms, record, result);
@@ -241,10 +238,10 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
 }
 
 template <Parts kParts>
-std::string TruckRun<kParts>::encoded_state() {
-  const auto statistics = std::make_unique<Statistics>();
-  core_->statistics(*statistics);
-  return encode_state(*statistics);
+std::unique_ptr<Statistics> TruckRun<kParts>::statistics() {
+  auto out = std::make_unique<Statistics>();
+  core_->statistics(*out);
+  return out;
 }
 
 template <Parts kParts>

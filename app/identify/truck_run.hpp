@@ -103,8 +103,8 @@ class TruckRun {
   }
   /// For the progress line: level and stiffness as the history has them last.
   [[nodiscard]] std::string state_text() const;
-  /// The sufficient statistics as state.dls holds them. Call after finish().
-  [[nodiscard]] std::string encoded_state();
+  /// The sufficient statistics, for state.dls. Call after finish().
+  [[nodiscard]] std::unique_ptr<Statistics> statistics();
 
  private:
   static constexpr std::size_t kStatuses = 8;

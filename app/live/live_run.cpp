@@ -167,7 +167,7 @@ Identified LiveRun::conclude() {
   out.result.watched = alarms_.states();
   recorder_.events().describe(truck_.first_time_ns(), out.result);
   explainer_.conclude(out.result);
-  out.state = truck_.encoded_state();
+  out.sums = truck_.statistics();
   out.inputs = parts_.inputs;
   return out;
 }

@@ -15,6 +15,7 @@
 
 #include "app/error.hpp"
 #include "app/run/json.hpp"
+#include "app/run/state.hpp"
 #include "app/run/tables.hpp"
 
 namespace dampline::app {
@@ -24,12 +25,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMarker = "run.toml";
 /// What a run writes beside the black box.
-constexpr std::array<std::string_view, 23> kRunFiles{
+constexpr std::array<std::string_view, 24> kRunFiles{
     kMarker,        "parameters.json", "curve.csv",        "densities.csv", "phase.json",
     "state.dls",    "report.html",     "convergence.csv",  "excluded.csv",  "motion.csv",
     "force.csv",    "windows.csv",     "cov.csv",          "term_sets.csv", "events.csv",
     "lateness.csv", "live.json",       "explanation.json", "residual.csv",  "loops.csv",
-    "law.csv",      "law.json",        "prediction.csv"};
+    "law.csv",      "law.json",        "prediction.csv",   "segments.csv"};
 
 bool is_run_file(const std::string& name) {
   return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end() ||
@@ -269,6 +270,7 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   if (!result.densities.empty()) directory.write("densities.csv", to_csv(result.densities));
   if (result.phase) directory.write("phase.json", to_json(*result.phase));
   if (!files.state.empty()) directory.write("state.dls", files.state);
+  if (!files.segments.empty()) directory.write("segments.csv", files.segments);
   if (!result.convergence.rows.empty())
     directory.write("convergence.csv", to_csv(result.convergence));
   if (!result.motion.empty()) directory.write("motion.csv", to_csv(result.motion));
@@ -284,10 +286,48 @@ void stage_files(const RunFiles& files, RunDirectory& directory) {
   directory.write("run.toml", files.run_toml);
 }
 
+namespace {
+
+/// Of a record without a date: the beginning of its checksum.
+std::uint64_t record_number(const std::string& sha256) {
+  constexpr int kHexadecimal = 16;
+  std::uint64_t number = 0;
+  const std::string_view head = std::string_view{sha256}.substr(0, 2 * sizeof(number));
+  std::from_chars(head.data(), head.data() + head.size(), number, kHexadecimal);
+  return number;
+}
+
+Estimate estimate_of(const RunResult& result, std::string_view name) {
+  for (const Parameter& p : result.parameters)
+    if (p.name == name) return {p.value, p.std};
+  return {};
+}
+
+StateAbout about_of(const Config& config, const RunResult& result, const Statistics& sums) {
+  const Origin& origin = result.origin;
+  StateAbout about;
+  about.segment = {origin.vehicle, origin.truck, origin.recorded.start_ns.value_or(0), 0};
+  if (!origin.recorded.start_ns) about.segment.record = record_number(origin.sha256);
+  about.end_ns = origin.recorded.end_ns.value_or(0);
+  about.sequence = sums.header.counts.samples;
+  about.load = origin.load;
+  about.moving_mass_kg = config.car.moving_mass_kg;
+  about.rate_hz = result.sample_rate_hz.value_or(Estimate{});
+  const auto& base = config.model.base;
+  about.viscous = std::find(base.begin(), base.end(), "viscous") != base.end();
+  about.trust = result.trust;
+  about.coulomb_n = estimate_of(result, "coulomb");
+  about.stiffness_npm = estimate_of(result, "stiffness");
+  return about;
+}
+
+}  // namespace
+
 RunFiles make_files(const Config& config, RunResult result, const std::vector<InputFile>& inputs,
-                    std::string state) {
+                    const Statistics* sums) {
   result.origin = origin_of(config, inputs, result.origin.recorded);
-  return {std::move(result), write_run_toml(config, inputs), std::move(state)};
+  std::string state = sums == nullptr ? "" : encode_state(*sums, about_of(config, result, *sums));
+  return {std::move(result), write_run_toml(config, inputs), std::move(state), ""};
 }
 
 RunFiles read_files(const std::filesystem::path& run) {

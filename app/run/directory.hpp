@@ -11,6 +11,7 @@
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
 #include "app/run/swept.hpp"
+#include "dampline/estimate/statistics.hpp"
 
 namespace dampline::app {
 
@@ -67,13 +68,16 @@ std::vector<std::filesystem::path> remove_old_runs(const std::filesystem::path& 
 struct RunFiles {
   RunResult result;
   std::string run_toml;
-  std::string state;  ///< state.dls; empty: there is none
+  std::string state;       ///< state.dls; empty: there is none
+  std::string segments{};  ///< segments.csv of a merge; empty: there is none
 };
 
-/// Of a result and what it was made of: the result says where it comes from, and run.toml repeats
-/// it. `inputs`: the source first.
+/// Of a result and what it was made of: the result says where it comes from, run.toml repeats it,
+/// and so does the state of a truck's sums. `inputs`: the source first. `sums`: null: there are
+/// none.
 [[nodiscard]] RunFiles make_files(const Config& config, RunResult result,
-                                  const std::vector<InputFile>& inputs, std::string state = "");
+                                  const std::vector<InputFile>& inputs,
+                                  const Statistics* sums = nullptr);
 
 /// Stages everything. Throws RunError.
 void stage_files(const RunFiles& files, RunDirectory& directory);

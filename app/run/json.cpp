@@ -313,6 +313,7 @@ void list_members(Archive&& a, Of<Origin> auto& o) {
   a.time("end_utc", o.recorded.end_ns);
   a.known("vehicle", o.vehicle);
   a.known("truck", o.truck);
+  if (a.has("load", !o.load.empty())) a("load", o.load);
   a.known("note", o.note);
   a("other_inputs", o.other_inputs);
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <nettle/sha2.h>
+#include <sys/auxv.h>
 #include <sys/stat.h>
 #include <toml++/toml.h>
 #include <unistd.h>
@@ -75,6 +76,14 @@ std::string version() { return DAMPLINE_VERSION; }
 
 std::string commit() { return kCommit; }
 
+std::filesystem::path program_file() {
+  // The kernel says it also where /proc is not mounted.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address is what it gives
+  const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  std::error_code error;
+  return started == nullptr ? "" : std::filesystem::canonical(started, error);
+}
+
 std::string utc_text(std::int64_t time_ns) {
   const std::int64_t us = (time_ns - (time_ns < 0 ? kMicrosecondNs - 1 : 0)) / kMicrosecondNs;
   constexpr std::int64_t kSecondUs = kSecondNs / kMicrosecondNs;
@@ -132,6 +141,7 @@ Origin origin_of(const Config& config, const std::vector<InputFile>& inputs,
   out.recorded = recorded;
   out.vehicle = config.record.vehicle;
   out.truck = config.record.truck;
+  out.load = config.record.load;
   out.note = config.record.note;
   if (inputs.empty()) return out;
   out.source = inputs.front().name;

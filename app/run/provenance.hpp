@@ -24,6 +24,9 @@ struct InputFile {
 /// The same; of what is no regular file the name alone.
 [[nodiscard]] InputFile describe_record(const std::string& path);
 
+/// The program that runs, as the kernel started it: links followed. Empty: not known.
+[[nodiscard]] std::filesystem::path program_file();
+
 /// The program's version, "0.1.0".
 [[nodiscard]] std::string version();
 /// The commit that it was built from, 12 digits, with "-dirty" where files differed from it; empty:
@@ -51,7 +54,7 @@ struct Origin {
   std::string source;  ///< as given
   std::string sha256;
   RecordedSpan recorded;
-  std::string vehicle, truck, note;  ///< of [record]
+  std::string vehicle, truck, load, note;  ///< of [record]
   std::vector<InputFile> other_inputs;
   std::optional<std::int64_t> written_ns;  ///< of live.json alone: UTC, ns since 1970
 };

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <type_traits>
 
 #include "app/error.hpp"
@@ -20,13 +21,18 @@ namespace dampline::app {
 namespace {
 
 constexpr std::string_view kMagic = "DAMPLINE";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
+constexpr std::uint16_t kBareVersion = 1;  // sums alone
 constexpr std::size_t kHeaderBytes =
     kMagic.size() + 4 * sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
 
 constexpr std::array<std::uint32_t, 3> kSizes{static_cast<std::uint32_t>(kScales),
                                               static_cast<std::uint32_t>(kRowColumns),
                                               static_cast<std::uint32_t>(kCurveSegments)};
+
+[[noreturn]] void fail(const std::string& origin, const std::string& what) {
+  throw RunError{fmt::format("{}: {}", origin, what)};
+}
 
 class Writer {
  public:
@@ -36,6 +42,11 @@ class Writer {
       bytes_ += static_cast<char>(static_cast<unsigned char>(bits >> shift));
   }
   void operator()(double value) { (*this)(std::bit_cast<std::uint64_t>(value)); }
+  void operator()(float value) { (*this)(std::bit_cast<std::uint32_t>(value)); }
+  void operator()(const std::string& value) {
+    (*this)(static_cast<std::uint32_t>(value.size()));
+    text(value);
+  }
   template <class T, std::size_t N>
   void operator()(const std::array<T, N>& values) {
     for (const T& value : values) (*this)(value);
@@ -47,13 +58,15 @@ class Writer {
   std::string bytes_;
 };
 
-/// Precondition of every read: the bytes are there. check_frame() and decode_state() know how many.
+/// What is not there reads as nothing, and is remembered.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_{bytes} {}
+  [[nodiscard]] bool read_all() const { return whole_ && rest_.empty(); }
   template <class T>
   requires std::integral<T> || std::floating_point<T>
   void operator()(T& value) {
+    if (!has(sizeof(T))) return;
     std::array<char, sizeof(T)> bytes{};
     rest_.copy(bytes.data(), bytes.size());
     rest_.remove_prefix(bytes.size());
@@ -64,16 +77,30 @@ class Reader {
   void operator()(std::array<T, N>& values) {
     for (T& value : values) (*this)(value);
   }
-  /// All of a state is such numbers, a megabyte of them.
+  void operator()(std::string& value) {
+    std::uint32_t bytes = 0;
+    (*this)(bytes);
+    if (!has(bytes)) return;
+    value.assign(rest_.substr(0, bytes));
+    rest_.remove_prefix(bytes);
+  }
+  /// All of a state is such numbers, a quarter of a megabyte of them.
   template <std::size_t N>
   requires(std::endian::native == std::endian::little) void operator()(
       std::array<double, N>& values) {
+    if (!has(sizeof(values))) return;
     std::memcpy(values.data(), rest_.data(), sizeof(values));
     rest_.remove_prefix(sizeof(values));
   }
 
  private:
+  [[nodiscard]] bool has(std::size_t bytes) {
+    whole_ = whole_ && bytes <= rest_.size();
+    return whole_;
+  }
+
   std::string_view rest_;
+  bool whole_{true};
 };
 
 /// Counts what would be written.
@@ -157,32 +184,101 @@ void walk(Archive& archive, S& statistics) {
   for (std::size_t i = 0; i < entries; ++i) walk_factors(archive, statistics.entries[i]);
 }
 
+/// In single precision. 24 bits of a factor's element keep level and stiffness to some 1e-6 of
+/// their values: `LightState` in tests/fleet holds it.
+void write_light(Writer& out, const ScaleFactors& factors) {
+  for (const RowFactor& factor : factors.factor)
+    for (const double x : factor.packed()) out(static_cast<float>(x));
+  out(factors.rows);
+  out(factors.blocks);
+}
+void read_light(Reader& in, ScaleFactors& factors) {
+  for (RowFactor& factor : factors.factor)
+    for (double& x : factor.packed()) {
+      float single = 0.0F;
+      in(single);
+      x = single;
+    }
+  in(factors.rows);
+  in(factors.blocks);
+}
+
+void walk_estimate(auto& archive, auto& estimate) {
+  archive(estimate.value);
+  archive(estimate.std);
+}
+
+template <class Archive, class About>
+void walk_about(Archive& archive, About& a) {
+  archive(a.segment.vehicle);
+  archive(a.segment.truck);
+  archive(a.segment.start_ns);
+  archive(a.segment.record);
+  archive(a.sequence);
+  archive(a.segments);
+  archive(a.end_ns);
+  archive(a.load);
+  archive(a.moving_mass_kg);
+  walk_estimate(archive, a.rate_hz);
+  walk_estimate(archive, a.coulomb_n);
+  walk_estimate(archive, a.stiffness_npm);
+}
+
+/// The two that are no plain numbers.
+void write_about(Writer& out, const StateAbout& about) {
+  walk_about(out, about);
+  out(static_cast<std::uint32_t>(about.viscous ? 1 : 0));
+  out(static_cast<std::uint32_t>(about.trust));
+}
+StateAbout read_about(Reader& in, const std::string& origin) {
+  StateAbout about;
+  std::uint32_t viscous = 0;
+  std::uint32_t trust = 0;
+  walk_about(in, about);
+  in(viscous);
+  in(trust);
+  if (!in.read_all() || viscous > 1 || trust > static_cast<std::uint32_t>(Trust::kNotIdentified) ||
+      about.segments == 0)
+    fail(origin, "does not say what it is of as states of this version do");
+  about.viscous = viscous == 1;
+  about.trust = static_cast<Trust>(trust);
+  return about;
+}
+
 std::uint32_t checksum(std::string_view bytes) {
   return drivers::crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
-[[noreturn]] void fail(const std::string& origin, const std::string& what) {
-  throw RunError{fmt::format("{}: {}", origin, what)};
-}
+struct Frame {
+  std::uint16_t version{0};
+  StateKind kind{StateKind::kFull};
+  std::string_view payload;
+};
 
-/// Size, version and checksum; returns the payload.
-std::string_view check_frame(std::string_view bytes, const std::string& origin) {
+/// Size, version and checksum.
+Frame check_frame(std::string_view bytes, const std::string& origin) {
   if (bytes.substr(0, kMagic.size()) != kMagic.substr(0, bytes.size()) || bytes.empty())
     fail(origin, "is no dampline state");
   if (bytes.size() < kHeaderBytes)
     fail(origin, fmt::format("is cut off after {} bytes", bytes.size()));
   Reader reader{bytes.substr(kMagic.size(), kHeaderBytes - kMagic.size())};
-  std::uint32_t version = 0;
+  Frame frame;
+  std::uint16_t kind = 0;
   std::array<std::uint32_t, 3> sizes{};
   std::uint64_t hash = 0;
   std::uint64_t payload = 0;
-  reader(version);
+  reader(frame.version);
+  reader(kind);
   reader(sizes);
   reader(hash);
   reader(payload);
-  if (version != kVersion)
-    fail(origin,
-         fmt::format("is a state of version {}; this program reads version {}", version, kVersion));
+  if (frame.version < kBareVersion || frame.version > kVersion)
+    fail(origin, fmt::format("is a state of version {}; this program reads versions {} to {}",
+                             frame.version, kBareVersion, kVersion));
+  if (kind > static_cast<std::uint16_t>(frame.version == kBareVersion ? StateKind::kFull
+                                                                      : StateKind::kLight))
+    fail(origin, fmt::format("is a state of kind {}, which this program does not know", kind));
+  frame.kind = static_cast<StateKind>(kind);
   const std::size_t rest = bytes.size() - kHeaderBytes;
   if (rest < sizeof(std::uint32_t) || payload != rest - sizeof(std::uint32_t))
     fail(origin, fmt::format("is cut off or has bytes too many: {} after the header, expected {}",
@@ -192,17 +288,64 @@ std::string_view check_frame(std::string_view bytes, const std::string& origin) 
   Reader{bytes.substr(covered.size())}(stated);
   if (checksum(covered) != stated) fail(origin, "is damaged: its checksum does not fit");
   if (sizes != kSizes) fail(origin, "was made with another number of scales, columns or segments");
-  return covered.substr(kHeaderBytes);
+  frame.payload = covered.substr(kHeaderBytes);
+  return frame;
+}
+
+/// Bytes of the sums at the beginning of the payload.
+std::size_t sums_bytes(const Frame& frame, const std::string& origin) {
+  Measure head;
+  StatisticsHeader header;
+  walk_head(head, header);
+  Reader reader{frame.payload};
+  walk_head(reader, header);
+  Measure factors;
+  const auto whole = std::make_unique<ScaleFactors>();
+  walk_factors(factors, *whole);
+  const std::size_t doubles = kScales * RowFactor::kSize * sizeof(double);
+  const std::size_t needed =
+      head.bytes() + (frame.kind == StateKind::kLight
+                          ? factors.bytes() - doubles / 2
+                          : (std::size_t{header.entry_count} + 1) * factors.bytes());
+  const bool entries =
+      frame.kind == StateKind::kLight ? header.entry_count == 0 : header.entry_count <= kEntries;
+  const bool fits = frame.version == kBareVersion ? frame.payload.size() == needed
+                                                  : frame.payload.size() >= needed;
+  if (!entries || !fits) fail(origin, "has a payload of another length than its entries need");
+  return needed;
+}
+
+void read_sums(Reader& reader, StateKind kind, Statistics& out) {
+  const std::size_t before = std::min<std::size_t>(out.header.entry_count, kEntries);
+  if (kind == StateKind::kFull) {
+    walk(reader, out);
+  } else {
+    walk_head(reader, out.header);
+    read_light(reader, out.total);
+    out.header.entry_count = 1;
+    out.header.blocks_per_entry = std::bit_ceil(std::max(out.total.blocks, 1U));
+    out.entries[0] = out.total;
+  }
+  for (std::size_t i = out.header.entry_count; i < before; ++i) out.entries[i].clear();
 }
 
 }  // namespace
 
-std::string encode_state(const Statistics& statistics) {
+std::string encode_state(const Statistics& statistics, const StateAbout& about, StateKind kind) {
   Writer payload;
-  walk(payload, statistics);
+  if (kind == StateKind::kFull) {
+    walk(payload, statistics);
+  } else {
+    StatisticsHeader header = statistics.header;
+    header.entry_count = 0;
+    walk_head(payload, header);
+    write_light(payload, statistics.total);
+  }
+  write_about(payload, about);
   Writer out;
   out.text(kMagic);
   out(kVersion);
+  out(static_cast<std::uint16_t>(kind));
   out(kSizes);
   out(statistics.header.basis_hash);
   out(static_cast<std::uint64_t>(payload.bytes().size()));
@@ -211,39 +354,50 @@ std::string encode_state(const Statistics& statistics) {
   return std::move(out.bytes());
 }
 
-void decode_state(std::string_view bytes, const std::string& origin, Statistics& out) {
-  const std::string_view payload = check_frame(bytes, origin);
-  Measure head;
-  StatisticsHeader header;
-  walk_head(head, header);
-  if (payload.size() >= head.bytes()) {
-    Reader first{payload};
-    walk_head(first, header);
+StateAbout decode_state(std::string_view bytes, const std::string& origin, Statistics& out) {
+  const Frame frame = check_frame(bytes, origin);
+  const std::size_t sums = sums_bytes(frame, origin);
+  StateAbout about;
+  if (frame.version != kBareVersion) {
+    Reader tail{frame.payload.substr(sums)};
+    about = read_about(tail, origin);
   }
-  Measure factors;
-  walk_factors(factors, out.total);
-  const std::size_t needed = head.bytes() + (std::size_t{header.entry_count} + 1) * factors.bytes();
-  if (header.entry_count > kEntries || payload.size() != needed)
-    fail(origin, "has a payload of another length than its entries need");
-  const std::size_t before = std::min<std::size_t>(out.header.entry_count, kEntries);
-  for (std::size_t i = header.entry_count; i < before; ++i) out.entries[i].clear();
-  Reader reader{payload};
-  walk(reader, out);
+  Reader reader{frame.payload};
+  read_sums(reader, frame.kind, out);
+  return about;
+}
+
+bool is_light_state(std::string_view bytes) {
+  std::uint16_t kind = 0;
+  Reader{bytes.substr(std::min(bytes.size(), kMagic.size() + sizeof(kVersion)))}(kind);
+  return kind == static_cast<std::uint16_t>(StateKind::kLight);
+}
+
+std::string other_basis(const StatisticsHeader& first, const StatisticsHeader& other) {
+  if (first.basis_hash == other.basis_hash) return "";
+  if (first.sample_rate_hz != other.sample_rate_hz)
+    return fmt::format("its nominal sample rate is {:.6g} Hz, expected {:.6g} Hz",
+                       other.sample_rate_hz, first.sample_rate_hz);
+  if (first.velocity_corner_hz != other.velocity_corner_hz)
+    return fmt::format(
+        "its velocity's drift filter has its corner at {} Hz, expected {} Hz; [model] "
+        "velocity_corner_hz states it",
+        other.velocity_corner_hz, first.velocity_corner_hz);
+  if (first.curve_nodes_mps != other.curve_nodes_mps)
+    return "its curve has other nodes ([model] curve_nodes_mps)";
+  return "its anti-aliasing filter, windows or further masses differ ([input.anti_alias], [car])";
 }
 
 void merge_state(Statistics& into, const Statistics& from, const std::string& origin) {
   if (!merge(into, from).ok())
-    fail(origin,
-         fmt::format("has another basis ({:016x}, expected {:016x}) and cannot be added: the "
-                     "sample rate, the curve's nodes or the velocity corner differ",
-                     from.header.basis_hash, into.header.basis_hash));
+    fail(origin, "has another basis and cannot be added: " + other_basis(into.header, from.header));
 }
 
-void load_state(const std::filesystem::path& file, Statistics& out) {
+StateAbout load_state(const std::filesystem::path& file, Statistics& out) {
   std::ifstream stream{file, std::ios::binary};
   const std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
   if (!stream.is_open() || stream.bad()) fail(file.string(), "cannot be read");
-  decode_state(bytes, file.string(), out);
+  return decode_state(bytes, file.string(), out);
 }
 
 }  // namespace dampline::app

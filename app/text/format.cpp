@@ -81,6 +81,27 @@ std::string format_duration(double seconds) {
   return rest == 0 ? large : fmt::format("{} {} {}", large, rest, unit == 60 ? "s" : "min");
 }
 
+std::string columns_text(const std::vector<std::vector<std::string>>& rows) {
+  constexpr std::size_t kBetween = 2;
+  const auto width_of = [](const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+      return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
+    }));
+  };
+  std::vector<std::size_t> widths(rows.empty() ? 0 : rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (widths[i] > 0) line += row[i] + std::string(widths[i] - width_of(row[i]) + kBetween, ' ');
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
 std::string toml_string(std::string_view text) {
   constexpr unsigned char kDelete = 0x7f;
   std::string out = "\"";

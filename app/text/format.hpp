@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dampline::app {
 
@@ -34,6 +35,10 @@ struct ReadUnit {
 
 /// Seconds as "45 s", "12 min 30 s", "5 h 12 min".
 [[nodiscard]] std::string format_duration(double seconds);
+
+/// A table for a terminal: columns as wide as their widest cell, two blanks between them; empty
+/// columns are left out.
+[[nodiscard]] std::string columns_text(const std::vector<std::vector<std::string>>& rows);
 
 /// A TOML basic string: in quotes, with what must be escaped escaped.
 [[nodiscard]] std::string toml_string(std::string_view text);

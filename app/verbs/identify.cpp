@@ -35,51 +35,12 @@
 #include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 #include "app/text/summary.hpp"
+#include "app/verbs/run_flags.hpp"
 #include "app/verbs/verbs.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::app {
 namespace {
-
-/// Of both verbs.
-struct RunFlags {
-  std::string config;
-  std::string out;
-  bool json{false};
-  bool quiet{false};
-  bool force{false};
-  bool no_report{false};
-  bool strict{false};
-
-  /// Where the run goes that was made of `source`.
-  [[nodiscard]] std::filesystem::path place(const std::string& source) const {
-    if (!out.empty()) return out;
-    return free_run_name(std::filesystem::current_path(),
-                         source == "-" ? "stdin" : std::filesystem::path{source}.stem().string());
-  }
-  /// What the last line on the terminal names.
-  [[nodiscard]] std::string outcome(const std::filesystem::path& place) const {
-    return drivers::printable((no_report ? place : place / "report.html").string());
-  }
-  [[nodiscard]] bool show_progress() const { return !quiet && ::isatty(STDERR_FILENO) == 1; }
-  [[nodiscard]] Config load() const { return config.empty() ? Config{} : load_config(config); }
-  void write(const RunFiles& files, RunDirectory& directory) const {
-    stage_files(files, directory);
-    if (!no_report) stage_report(files, directory);
-    directory.commit();
-  }
-  /// The exit code. What is not shown is said on the standard error.
-  [[nodiscard]] int verdict(const RunResult& result) const {
-    constexpr int kNotTrusted = 3;
-    if (result.trust == Trust::kTrusted) return 0;
-    if (json || quiet || strict)
-      warn(fmt::format("{}: {}", name_of(result.trust), fmt::join(result.trust_reasons, " ")));
-    return strict ? kNotTrusted : 0;
-  }
-  void add_strict(CLI::App& verb) {
-    verb.add_flag("--strict", strict, "end with 3 where the result is not to be trusted");
-  }
-};
 
 struct ExplainFlags : RunFlags {
   std::vector<std::string> records;
@@ -110,7 +71,7 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
   law.record = options.records.front();
   result.law = to_json(law);
   return {summarize(explanation),
-          make_files(config, std::move(result), found.inputs, std::move(found.state))};
+          make_files(config, std::move(result), found.inputs, found.sums.get())};
 }
 
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
@@ -320,7 +281,7 @@ int identify(const IdentifyFlags& options) {
   Identified found = find(options, config, kind, place);
   found.result.notes.insert(found.result.notes.begin(), seen.notes.begin(), seen.notes.end());
   const RunFiles files =
-      make_files(config, std::move(found.result), found.inputs, std::move(found.state));
+      make_files(config, std::move(found.result), found.inputs, found.sums.get());
   write_result(options, files, directory, place, kind);
   print_result(options, files.result, place);
   return options.verdict(files.result);

@@ -2,28 +2,23 @@
 #include "app/verbs/programs.hpp"
 
 #include <fmt/format.h>
-#include <sys/auxv.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "app/error.hpp"
+#include "app/run/provenance.hpp"
 
 namespace dampline::app {
 namespace {
 
 /// `target` is what builds the program.
 int become(const std::string& name, const char* target, char** arguments) {
-  // The kernel says what it started also where /proc is not mounted.
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): an address is what it gives
-  const auto* const started = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
-  std::error_code error;
-  const auto folder =
-      std::filesystem::canonical(started != nullptr ? started : arguments[0], error).parent_path();
+  const auto folder = program_file().parent_path();
   for (const std::string& place : {name, "../libexec/dampline/" + name})
     execv((folder / place).c_str(), arguments);
   throw RunError{
@@ -48,6 +43,17 @@ bool asks_for_method(char** arguments) {
     if (text == "--method" || text.starts_with("--method=")) return true;
   }
   return false;
+}
+
+bool is_rank(char** arguments) {
+  if (std::string_view{arguments[0]} != "archive") return false;
+  for (const char* launcher : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(launcher) != nullptr) return true;
+  return false;
+}
+
+int run_rank(char** arguments) {
+  return become("dampline-archive-mpi", "dampline_archive_mpi", arguments);
 }
 
 int run_method(char** arguments) {

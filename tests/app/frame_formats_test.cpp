@@ -28,7 +28,7 @@ class FrameFormats : public testing::Test {
     const auto outcome =
         program_.run("identify --quiet --no-report --force --out run " + source, before);
     EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return {program_.read("run/state.dls")};
+    return sums_of(program_.read("run/state.dls"));
   }
   /// Runs a command of the shell in the folder; false: it failed, or there is no such program.
   [[nodiscard]] bool shell(const std::string& command) const {

@@ -24,7 +24,7 @@ class RowFormats : public testing::Test {
     const auto outcome =
         program_.run("identify --quiet --no-report --force --out run " + source, before);
     EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return {program_.read("run/state.dls")};
+    return sums_of(program_.read("run/state.dls"));
   }
   /// `names` and `rows` of a.csv stand before the script. False: a module is missing.
   [[nodiscard]] bool python(const std::string& script) const {

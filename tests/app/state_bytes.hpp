@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <functional>
 #include <ostream>
+#include <memory>
 #include <string>
+
+#include "app/run/state.hpp"
 
 namespace dampline::app {
 
-/// The bytes of a state.dls, shown by their number and a hash where a test fails.
+/// Bytes of a state.dls, shown by their number and a hash where a test fails.
 struct StateBytes {
   std::string bytes;
   [[nodiscard]] std::size_t size() const { return bytes.size(); }
@@ -16,5 +19,13 @@ struct StateBytes {
     return out << state.size() << " bytes, hash " << std::hash<std::string>{}(state.bytes);
   }
 };
+
+/// The sums of a state alone: the same record in another format, or without a date, is another
+/// segment.
+inline StateBytes sums_of(const std::string& state) {
+  const auto sums = std::make_unique<Statistics>();
+  decode_state(state, "a state", *sums);
+  return {encode_state(*sums)};
+}
 
 }  // namespace dampline::app

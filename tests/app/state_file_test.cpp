@@ -69,7 +69,7 @@ TEST(StateFile, ReadsBackEveryField) {
 TEST(StateFile, IsLittleEndian) {
   const std::string bytes = encode_state(*some_statistics());
   EXPECT_EQ(bytes.substr(0, 8), "DAMPLINE");
-  EXPECT_EQ(bytes.substr(8, 4), std::string("\x01\x00\x00\x00", 4));
+  EXPECT_EQ(bytes.substr(8, 4), std::string("\x02\x00\x00\x00", 4));
   EXPECT_EQ(bytes.substr(24, 8), "\xef\xcd\xab\x89\x67\x45\x23\x01");
 }
 

@@ -54,7 +54,7 @@ open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
     const auto outcome =
         program_.run("identify --quiet --no-report --force --out run " + source, before);
     EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return {program_.read("run/state.dls")};
+    return sums_of(program_.read("run/state.dls"));
   }
   Program program_;
 };

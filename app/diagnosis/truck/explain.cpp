@@ -77,7 +77,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.inputs.insert(out.inputs.begin(), describe_record(options.source.path));
   for (const std::string& path : options.validation)
     out.inputs.push_back(describe_input(path, "validation"));
-  out.state = pass.run->encoded_state();
+  out.sums = pass.run->statistics();
   return out;
 }
 

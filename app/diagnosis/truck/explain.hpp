@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct Explained : effect::Judgement {
   Signature signature;  ///< of what the final model leaves; rms 0: the record was read only once
   Convergence convergence;  ///< of the final model; where the record was read again
   RunResult identified;     ///< what identify says of the same record
-  std::string state;        ///< for state.dls
+  std::shared_ptr<const Statistics> sums;
   std::vector<InputFile> inputs;
 };
 

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "app/fleet/leaves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "app/error.hpp"
+#include "app/text/format.hpp"
+#include "drivers/checksum/crc32c.hpp"
+
+namespace dampline::app::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSuffix = ".dls";
+
+/// A file that was found, or that somebody named.
+struct Found {
+  fs::path file;
+  bool named{false};
+};
+
+void find_below(const fs::path& folder, std::vector<Found>& out) {
+  std::error_code error;
+  fs::recursive_directory_iterator at{folder, error};
+  for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (name.starts_with('.')) {  // what is being written
+      if (at->is_directory(error)) at.disable_recursion_pending();
+      continue;
+    }
+    if (at->path().extension() == kSuffix && at->is_regular_file(error))
+      out.push_back({at->path(), false});
+  }
+  if (error)
+    throw RunError{fmt::format("{}: cannot be read: {}", folder.string(), error.message())};
+}
+
+std::vector<Found> find_states(const std::vector<std::string>& sources) {
+  std::vector<Found> out;
+  for (const std::string& source : sources) {
+    std::error_code error;
+    if (!fs::is_directory(source, error)) {
+      out.push_back({source, true});
+    } else if (fs::exists(fs::path{source} / "run.toml", error)) {
+      out.push_back({fs::path{source} / "state.dls", true});
+    } else {
+      find_below(source, out);
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const Found& a, const Found& b) { return a.file < b.file; });
+  return out;
+}
+
+Leaf read_leaf(const fs::path& file, Statistics& scratch) {
+  std::ifstream stream{file, std::ios::binary};
+  const std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
+  if (!stream.is_open() || stream.bad())
+    throw RunError{
+        fmt::format("{}: cannot be read; expected a state, a run directory of a truck, "
+                    "or a directory of these",
+                    file.string())};
+  Leaf leaf;
+  leaf.about = decode_state(bytes, file.string(), scratch);
+  leaf.header = scratch.header;
+  leaf.light = is_light_state(bytes);
+  leaf.checksum =
+      drivers::crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  leaf.file = file;
+  if (!(leaf.about.moving_mass_kg > 0.0))
+    throw RunError{fmt::format(
+        "{}: is a state of version 1, which does not say of which segment it is; expected a later "
+        "one: identify its record again",
+        file.string())};
+  return leaf;
+}
+
+/// The one that counts comes first: the order in which all are brought.
+auto order(const Leaf& leaf) {
+  return std::make_tuple(std::cref(leaf.about.segment), ~leaf.about.sequence, leaf.light,
+                         leaf.checksum, std::cref(leaf.file));
+}
+
+void leave_out(std::vector<Leaf>& leaves, std::vector<LeftOut>& left_out) {
+  std::vector<Leaf> kept;
+  for (Leaf& leaf : leaves) {
+    if (leaf.about.trust == Trust::kDataFaulty) {
+      left_out.push_back({leaf.file, "faults of the data spoil it"});
+    } else if (!kept.empty() && kept.back().about.segment == leaf.about.segment) {
+      left_out.push_back({leaf.file, fmt::format("{} of the segment of {}",
+                                                 leaf.about.sequence < kept.back().about.sequence
+                                                     ? "an earlier state"
+                                                     : "the same state again",
+                                                 kept.back().file.string())});
+    } else {
+      kept.push_back(std::move(leaf));
+    }
+  }
+  leaves = std::move(kept);
+}
+
+}  // namespace
+
+Leaves find_leaves(const std::vector<std::string>& sources) {
+  Leaves out;
+  const auto scratch = std::make_unique<Statistics>();
+  for (const Found& found : find_states(sources)) {
+    Leaf leaf = read_leaf(found.file, *scratch);
+    if (leaf.about.segments == 1) {
+      out.list.push_back(std::move(leaf));
+      continue;
+    }
+    const std::string what = fmt::format("is itself a merge, of {} segments", leaf.about.segments);
+    if (found.named)
+      throw RunError{fmt::format(
+          "{}: {}: the bytes of a merge depend on its segments alone; expected their states",
+          found.file.string(), what)};
+    out.left_out.push_back({found.file, what});
+  }
+  std::sort(out.list.begin(), out.list.end(),
+            [](const Leaf& a, const Leaf& b) { return order(a) < order(b); });
+  leave_out(out.list, out.left_out);
+  if (out.list.empty())
+    throw RunError{fmt::format("{}: holds no state that can be merged ({} left out)",
+                               sources.front(), out.left_out.size())};
+  std::sort(out.left_out.begin(), out.left_out.end(),
+            [](const LeftOut& a, const LeftOut& b) { return a.file < b.file; });
+  const auto unnamed = std::count_if(out.list.begin(), out.list.end(), [](const Leaf& leaf) {
+    return leaf.about.segment.vehicle.empty();
+  });
+  if (unnamed > 0 && out.list.size() > 1)
+    out.notes.push_back(fmt::format(
+        "{} of {} states name no vehicle and are taken as one car's: [record] vehicle and truck "
+        "name it.",
+        unnamed, out.list.size()));
+  return out;
+}
+
+std::string objection(const Leaf& first, const Leaf& leaf) {
+  // A rate that is 0.1 % off moves the stiffness by 0.2 %, within the 0.3 % that its deviation has
+  // at least (damping/summary.cpp).
+  constexpr double kRateApart = 1e-3;
+  constexpr double kSure = 3.0;  // deviations
+  if (const std::string basis = other_basis(first.header, leaf.header); !basis.empty())
+    return "another basis: " + basis;
+  const StateAbout& a = first.about;
+  const StateAbout& b = leaf.about;
+  if (a.moving_mass_kg != b.moving_mass_kg)
+    return fmt::format(
+        "another mass: [car] moving_mass_kg is {}, expected {}: every force scales with it",
+        b.moving_mass_kg, a.moving_mass_kg);
+  const double rate = a.rate_hz.value > 0.0 ? a.rate_hz.value : first.header.sample_rate_hz;
+  if (b.rate_hz.value > 0.0 && std::abs(b.rate_hz.value / rate - 1.0) > kRateApart)
+    return fmt::format("another rate: {:.3f} Hz by its record's own time, expected {:.3f} Hz",
+                       b.rate_hz.value, rate);
+  for (const auto& [name, value] :
+       {std::pair{"friction", b.coulomb_n}, std::pair{"stiffness", b.stiffness_npm}})
+    if (value.value + kSure * value.std < 0.0)
+      return fmt::format(
+          "another sign: its {} comes out negative; are channels exchanged or reversed?", name);
+  return "";
+}
+
+std::vector<Leaf> check_alike(std::vector<Leaf> leaves, std::vector<LeftOut>* left_out) {
+  std::vector<Leaf> out;
+  for (Leaf& leaf : leaves) {
+    const Leaf& first = out.empty() ? leaf : out.front();
+    const std::string why = objection(first, leaf);
+    if (why.empty()) {
+      out.push_back(std::move(leaf));
+      continue;
+    }
+    if (left_out == nullptr)
+      throw RunError{fmt::format("{}: cannot be added to {}: {}; --leave-out goes on without it",
+                                 leaf.file.string(), first.file.string(), why)};
+    left_out->push_back({leaf.file, why});
+  }
+  return out;
+}
+
+std::vector<std::string> overlaps(std::span<const Leaf> leaves) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kNotableS = 1.0;
+  std::vector<std::string> out;
+  std::size_t count = 0;
+  const Leaf* latest = nullptr;  // that ends last, of the truck
+  for (const Leaf& leaf : leaves) {
+    const Segment& segment = leaf.about.segment;
+    const bool same_truck = latest != nullptr && latest->about.segment.vehicle == segment.vehicle &&
+                            latest->about.segment.truck == segment.truck;
+    if (same_truck && segment.start_ns != 0) {
+      const double twice_s = 1e-9 * static_cast<double>(latest->about.end_ns - segment.start_ns);
+      if (twice_s > kNotableS && ++count <= kMost)
+        out.push_back(fmt::format("{} begins {} before {} ends: the same motion counts twice.",
+                                  leaf.file.string(), format_duration(twice_s),
+                                  latest->file.string()));
+    }
+    if (!same_truck || leaf.about.end_ns > latest->about.end_ns) latest = &leaf;
+  }
+  if (count > kMost) out.push_back(fmt::format("{} more overlap.", count - kMost));
+  return out;
+}
+
+}  // namespace dampline::app::fleet

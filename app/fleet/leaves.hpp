@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// The states that a merge is made of, in the one order that its bytes depend on.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/run/state.hpp"
+
+/// Many runs: what `merge`, `archive` and `collect` share.
+namespace dampline::app::fleet {
+
+/// The state of one segment, where it lies.
+struct Leaf {
+  StateAbout about;
+  StatisticsHeader header;
+  bool light{false};
+  std::uint32_t checksum{0};  ///< CRC-32C of the file
+  std::filesystem::path file;
+};
+
+/// A state that is not in the merge, and why.
+struct LeftOut {
+  std::filesystem::path file;
+  std::string reason;
+};
+
+struct Leaves {
+  std::vector<Leaf> list;          ///< in the order of their segments, each segment once
+  std::vector<LeftOut> left_out;   ///< in the order of their names
+  std::vector<std::string> notes;  ///< what a reader must know of them
+};
+
+/// Of each source, a state, a run directory or a directory of any of these to any depth. Left out
+/// are earlier states of a segment (by sequence; where it is the same, light before full, then
+/// those with the larger checksums), what faults of the data spoil, and in directories what is
+/// itself a merge. Throws RunError naming a state that is damaged, has no segment (version 1) or is
+/// given by name and is a merge, and where no state is left.
+[[nodiscard]] Leaves find_leaves(const std::vector<std::string>& sources);
+
+/// Why `leaf` cannot be added to those before it, of which `first` is one: another basis, mass or
+/// measured rate, or friction or a spring of the other sign; empty: it can.
+[[nodiscard]] std::string objection(const Leaf& first, const Leaf& leaf);
+
+/// Throws RunError with the reason at the first that cannot be added; with `left_out` it goes there
+/// instead, and what remains is returned.
+[[nodiscard]] std::vector<Leaf> check_alike(std::vector<Leaf> leaves,
+                                            std::vector<LeftOut>* left_out);
+
+/// Whether two segments of one truck overlap in time: "STATE begins 12 min before OTHER ends ...",
+/// a sentence for each, at most a few.
+[[nodiscard]] std::vector<std::string> overlaps(std::span<const Leaf> leaves);
+
+}  // namespace dampline::app::fleet
