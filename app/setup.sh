@@ -16,6 +16,7 @@ nettle-dev           SHA-256 of the input files and of a page's scripts
 zlib1g-dev           records compressed by gzip, Vector BLF, NumPy's .npz
 libzstd-dev          records compressed by zstd
 libmicrohttpd-dev    the page, the metrics and the events of a live run
+libsqlite3-dev       the states of a fleet
 libgpiod-dev         marker lines and the status lamp
 pkg-config           finds libgpiod and its version
 "
@@ -42,6 +43,11 @@ libhdf5-dev          reads HDF5, an optional part of the program
 python3-h5py         writes it
 libmatio-dev         reads MAT files below version 7.3, an optional part of the program
 python3-scipy        writes them
+libopenmpi-dev       archives by MPI, an optional part of the program
+openmpi-bin          starts its ranks
+slurm-wlm            runs an archive's tasks
+munge                lets its parts know each other
+sqlite3              reads the database of a fleet
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

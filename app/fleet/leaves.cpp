@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/error.hpp"
+#include "app/fleet/database.hpp"
 #include "app/text/format.hpp"
 #include "drivers/checksum/crc32c.hpp"
 
@@ -61,14 +62,16 @@ std::vector<Found> find_states(const std::vector<std::string>& sources) {
   return out;
 }
 
-Leaf read_leaf(const fs::path& file, Statistics& scratch) {
-  std::ifstream stream{file, std::ios::binary};
-  const std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
-  if (!stream.is_open() || stream.bad())
-    throw RunError{
-        fmt::format("{}: cannot be read; expected a state, a run directory of a truck, "
-                    "or a directory of these",
-                    file.string())};
+/// The one that counts comes first: the order in which all are brought.
+auto order(const Leaf& leaf) {
+  return std::make_tuple(std::cref(leaf.about.segment), ~leaf.about.sequence, leaf.light,
+                         leaf.checksum, std::cref(leaf.file));
+}
+
+}  // namespace
+
+Leaf leaf_of(const fs::path& file, std::function<std::string()> read, Statistics& scratch) {
+  const std::string bytes = read();
   Leaf leaf;
   leaf.about = decode_state(bytes, file.string(), scratch);
   leaf.header = scratch.header;
@@ -76,6 +79,7 @@ Leaf read_leaf(const fs::path& file, Statistics& scratch) {
   leaf.checksum =
       drivers::crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   leaf.file = file;
+  leaf.read = std::move(read);
   if (!(leaf.about.moving_mass_kg > 0.0))
     throw RunError{fmt::format(
         "{}: is a state of version 1, which does not say of which segment it is; expected a later "
@@ -84,11 +88,22 @@ Leaf read_leaf(const fs::path& file, Statistics& scratch) {
   return leaf;
 }
 
-/// The one that counts comes first: the order in which all are brought.
-auto order(const Leaf& leaf) {
-  return std::make_tuple(std::cref(leaf.about.segment), ~leaf.about.sequence, leaf.light,
-                         leaf.checksum, std::cref(leaf.file));
+std::function<std::string()> file_reader(const fs::path& file) {
+  return [file] {
+    std::ifstream stream{file, std::ios::binary};
+    std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
+    if (!stream.is_open() || stream.bad())
+      throw RunError{
+          fmt::format("{}: cannot be read; expected a state, a run directory of a truck, "
+                      "a database, or a directory of states",
+                      file.string())};
+    return bytes;
+  };
 }
+
+bool comes_before(const Leaf& a, const Leaf& b) { return order(a) < order(b); }
+
+namespace {
 
 void leave_out(std::vector<Leaf>& leaves, std::vector<LeftOut>& left_out) {
   std::vector<Leaf> kept;
@@ -108,15 +123,19 @@ void leave_out(std::vector<Leaf>& leaves, std::vector<LeftOut>& left_out) {
   leaves = std::move(kept);
 }
 
-}  // namespace
-
-Leaves find_leaves(const std::vector<std::string>& sources) {
-  Leaves out;
+std::vector<Leaf> all_leaves(const std::vector<std::string>& sources,
+                             std::vector<LeftOut>& left_out) {
+  std::vector<Leaf> out;
   const auto scratch = std::make_unique<Statistics>();
   for (const Found& found : find_states(sources)) {
-    Leaf leaf = read_leaf(found.file, *scratch);
+    if (is_database(found.file)) {
+      std::vector<Leaf> stored = Database{found.file, Database::Access::kRead}.leaves();
+      std::move(stored.begin(), stored.end(), std::back_inserter(out));
+      continue;
+    }
+    Leaf leaf = leaf_of(found.file, file_reader(found.file), *scratch);
     if (leaf.about.segments == 1) {
-      out.list.push_back(std::move(leaf));
+      out.push_back(std::move(leaf));
       continue;
     }
     const std::string what = fmt::format("is itself a merge, of {} segments", leaf.about.segments);
@@ -124,10 +143,23 @@ Leaves find_leaves(const std::vector<std::string>& sources) {
       throw RunError{fmt::format(
           "{}: {}: the bytes of a merge depend on its segments alone; expected their states",
           found.file.string(), what)};
-    out.left_out.push_back({found.file, what});
+    left_out.push_back({found.file, what});
   }
-  std::sort(out.list.begin(), out.list.end(),
-            [](const Leaf& a, const Leaf& b) { return order(a) < order(b); });
+  return out;
+}
+
+}  // namespace
+
+std::vector<fs::path> state_files(const std::vector<std::string>& sources) {
+  std::vector<fs::path> out;
+  for (Found& found : find_states(sources)) out.push_back(std::move(found.file));
+  return out;
+}
+
+Leaves find_leaves(const std::vector<std::string>& sources) {
+  Leaves out;
+  out.list = all_leaves(sources, out.left_out);
+  std::sort(out.list.begin(), out.list.end(), comes_before);
   leave_out(out.list, out.left_out);
   if (out.list.empty())
     throw RunError{fmt::format("{}: holds no state that can be merged ({} left out)",

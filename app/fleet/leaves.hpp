@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +18,20 @@ struct Leaf {
   StateAbout about;
   StatisticsHeader header;
   bool light{false};
-  std::uint32_t checksum{0};  ///< CRC-32C of the file
-  std::filesystem::path file;
+  std::uint32_t checksum{0};          ///< CRC-32C of the file
+  std::filesystem::path file;         ///< or what errors call it
+  std::function<std::string()> read;  ///< its bytes again; throws RunError
 };
+
+/// Of bytes that are read, and can be read again. Throws RunError naming `file` for no state, or
+/// one without a segment (version 1). `scratch` saves memory.
+[[nodiscard]] Leaf leaf_of(const std::filesystem::path& file, std::function<std::string()> read,
+                           Statistics& scratch);
+/// A state where it lies.
+[[nodiscard]] std::function<std::string()> file_reader(const std::filesystem::path& file);
+
+/// Which of two states comes first: by segment; of one segment the one that counts.
+[[nodiscard]] bool comes_before(const Leaf& a, const Leaf& b);
 
 /// A state that is not in the merge, and why.
 struct LeftOut {
@@ -33,7 +45,13 @@ struct Leaves {
   std::vector<std::string> notes;  ///< what a reader must know of them
 };
 
-/// Of each source, a state, a run directory or a directory of any of these to any depth. Left out
+/// The files of states at `sources`, in the order of their names. Throws RunError for a directory
+/// that cannot be read.
+[[nodiscard]] std::vector<std::filesystem::path> state_files(
+    const std::vector<std::string>& sources);
+
+/// Of each source, a state, a run directory, a database or a directory of states and runs to any
+/// depth. Left out
 /// are earlier states of a segment (by sequence; where it is the same, light before full, then
 /// those with the larger checksums), what faults of the data spoil, and in directories what is
 /// itself a merge. Throws RunError naming a state that is damaged, has no segment (version 1) or is

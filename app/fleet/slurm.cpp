@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "app/fleet/slurm.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
-#include <cstdio>
-#include <memory>
+#include <cerrno>
+#include <cstdlib>
+#include <sstream>
 #include <system_error>
+#include <vector>
 
 #include "app/error.hpp"
 #include "app/run/disk.hpp"
@@ -25,21 +30,51 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-/// What a command of fixed words and quoted names prints.
-std::string output_of(const std::string& command) {
-  struct Close {
-    void operator()(FILE* stream) const { ::pclose(stream); }
-  };
-  // NOLINTNEXTLINE(cert-env33-c): sbatch is found as its user's shell finds it; names are quoted
-  std::unique_ptr<FILE, Close> pipe{::popen((command + " 2>&1").c_str(), "r")};
-  if (!pipe) throw RunError{"sbatch: cannot be started"};
+/// Where the user's shell would find it.
+fs::path find_program(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders{path == nullptr ? "/usr/bin" : path};
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (const fs::path file = fs::path{folder} / name; ::access(file.c_str(), X_OK) == 0)
+      return file;
+  throw RunError{fmt::format("{}: is in no folder of PATH; Slurm brings it", name)};
+}
+
+std::string read_all(int from) {
   std::string out;
-  std::array<char, 256> text{};
-  while (std::fgets(text.data(), text.size(), pipe.get()) != nullptr) out += text.data();
-  const int status = ::pclose(pipe.release());
+  std::array<char, 4096> bytes{};
+  for (ssize_t count = ::read(from, bytes.data(), bytes.size()); count > 0;
+       count = ::read(from, bytes.data(), bytes.size()))
+    out.append(bytes.data(), static_cast<std::size_t>(count));
+  return out;
+}
+
+/// What a program prints, on both outputs. No shell is asked. Throws RunError where it fails.
+std::string output_of(std::vector<std::string> words) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_io(words.front(), "be started", errno);
+  const Descriptor from{ends[0]};
+  Descriptor to{ends[1]};
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, to.get(), STDOUT_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, to.get(), STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const fs::path program = find_program(words.front());
+  pid_t child = 0;
+  const int error =
+      ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  to.close();
+  if (error != 0) fail_io(program, "be started", error);
+  std::string out = read_all(from.get());
+  int status = 0;
+  ::waitpid(child, &status, 0);
   while (!out.empty() && out.back() == '\n') out.pop_back();
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw RunError{fmt::format("sbatch: {}", out)};
+    throw RunError{fmt::format("{}: {}", words.front(), out)};
   return out.substr(0, out.find(';'));  // behind it, the cluster's name
 }
 
@@ -72,10 +107,11 @@ SlurmJobs submit_slurm(const fs::path& out, const std::vector<Log>& logs, int ta
   write_file(folder / "merge.sh",
              script("dampline-merge", folder, "%j", jobs, command + " --merge-only"));
   SlurmJobs submitted;
-  submitted.array = output_of(fmt::format("sbatch --parsable --array=0-{} {}", tasks - 1,
-                                          quoted((folder / "task.sh").string())));
-  submitted.merge = output_of(fmt::format("sbatch --parsable --dependency=afterok:{} {}",
-                                          submitted.array, quoted((folder / "merge.sh").string())));
+  submitted.array = output_of({"sbatch", "--parsable", fmt::format("--array=0-{}", tasks - 1),
+                               (folder / "task.sh").string()});
+  submitted.merge =
+      output_of({"sbatch", "--parsable", fmt::format("--dependency=afterok:{}", submitted.array),
+                 (folder / "merge.sh").string()});
   return submitted;
 }
 

@@ -40,7 +40,7 @@ std::vector<Node> merge_chunk(std::span<const Leaf> leaves) {
   Tree tree;
   for (const Leaf& leaf : leaves) {
     auto sums = std::make_unique<Statistics>();
-    load_state(leaf.file, *sums);
+    decode_state(leaf.read(), leaf.file.string(), *sums);
     tree.push({0, std::move(sums)}, leaf.file.string());
   }
   return tree.take();

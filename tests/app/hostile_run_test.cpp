@@ -144,7 +144,7 @@ TEST_F(HostileRun, NamesOfEventsAndReasonsAreDrawnAsTheyAre) {
 }
 
 #if !defined(DAMPLINE_SANITIZED)  // a sanitizer brings calls of its own
-TEST(Program, StartsNoOtherProgramThanTheOneOfAnAlarm) {
+TEST(Program, StartsNoShellAndNothingByAName) {
   const Program program;
   ASSERT_EQ(std::system(("nm -D --undefined-only '" DAMPLINE_BINARY_DIR "/dampline' > '" +
                          program.path("symbols").string() + "'")
@@ -152,8 +152,8 @@ TEST(Program, StartsNoOtherProgramThanTheOneOfAnAlarm) {
             0);
   const std::string symbols = program.read("symbols");
   ASSERT_THAT(symbols, HasSubstr("write"));
-  // posix_spawn() starts what [alarm] on_alarm of a live run names; a record's replay starts
-  // nothing.
+  // posix_spawn() starts what [alarm] on_alarm of a live run names, and sbatch for `archive
+  // --slurm`; a record's replay starts nothing.
   for (const char* call :
        {" posix_spawnp", " popen", " system@", " execl", " execvp", " fork", " vfork"})
     EXPECT_THAT(symbols, Not(HasSubstr(call)));

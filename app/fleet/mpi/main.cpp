@@ -109,8 +109,11 @@ class Ranks final : public fleet::Workers {
     std::string list;
     broadcast(list);
     std::vector<fleet::Leaf> leaves;
-    for (std::size_t at = 0; at < list.size(); at = list.find('\0', at) + 1)
-      leaves.emplace_back().file = list.c_str() + at;
+    for (std::size_t at = 0; at < list.size(); at = list.find('\0', at) + 1) {
+      fleet::Leaf& leaf = leaves.emplace_back();
+      leaf.file = list.c_str() + at;
+      leaf.read = fleet::file_reader(leaf.file);
+    }
     const std::size_t chunk = fleet::chunk_of(leaves.size());
     for (std::size_t number = part_.part; number * chunk < leaves.size(); number += part_.of)
       send_chunk(fleet::merge_chunk(chunk_at(leaves, number)));
