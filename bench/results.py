@@ -39,6 +39,7 @@ PARTS = {
     "trucks": "Trucks at 300 Hz in one process",
     "blackbox": "Recording",
     "other_processors": "Other processors, in emulators",
+    "archive": "Archives of logs",
     "live": "Lateness of a live run",
     "accuracy": "Accuracy",
     "small_parts": "The estimate for small parts",
