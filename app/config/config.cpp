@@ -223,7 +223,9 @@ Config load_config(const std::filesystem::path& file) {
   std::string& dbc = config.input.can.dbc;
   if (!dbc.empty() && std::filesystem::path{dbc}.is_relative())
     dbc = (file.parent_path() / dbc).string();
-  for (std::string* path : {&config.serve.token_file, &config.alarm.reference})
+  for (std::string* path :
+       {&config.serve.token_file, &config.alarm.reference, &config.mqtt.password_file,
+        &config.mqtt.ca_file, &config.mqtt.cert_file, &config.mqtt.key_file})
     if (!path->empty() && std::filesystem::path{*path}.is_relative())
       *path = (file.parent_path() / *path).string();
   return config;

@@ -108,6 +108,15 @@ struct ServeSettings {
   std::string token_file;  ///< its first line is what a reader must know; empty: loopback only
 };
 
+/// The MQTT broker that a live run tells.
+struct MqttSettings {
+  std::string broker;  ///< "127.0.0.1:1883"; empty: none
+  std::string topic{"dampline"};
+  std::string user, password_file;
+  std::string ca_file;              ///< TLS; empty: none
+  std::string cert_file, key_file;  ///< of this client
+};
+
 /// What a live run tells at once.
 struct AlarmSettings {
   std::optional<double> coulomb_below_n;
@@ -148,6 +157,7 @@ struct Config {
   BlackboxSettings blackbox;
   LiveSettings live;
   ServeSettings serve;
+  MqttSettings mqtt;
   AlarmSettings alarm;
   GpioConfig gpio;
   /// Those that the file has; none of a run directory's own run.toml, which has them all.

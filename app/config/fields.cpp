@@ -197,6 +197,21 @@ void add_serve(ServeSettings& serve, Fields& out) {
                  TextField{&serve.token_file, {}}});
 }
 
+void add_mqtt(MqttSettings& mqtt, Fields& out) {
+  out.push_back({"mqtt", "broker",
+                 "HOST:PORT of the broker that a live run tells, 127.0.0.1:1883; empty: none",
+                 TextField{&mqtt.broker, {}}});
+  out.push_back({"mqtt", "topic", "first part of the topics: TOPIC/VEHICLE/TRUCK/live",
+                 TextField{&mqtt.topic, {}}});
+  out.push_back({"mqtt", "user", "name for the broker; empty: none", TextField{&mqtt.user, {}}});
+  out.push_back({"mqtt", "password_file", "its first line is the password",
+                 TextField{&mqtt.password_file, {}}});
+  out.push_back({"mqtt", "ca_file", "certificates that the broker's is held against; empty: no TLS",
+                 TextField{&mqtt.ca_file, {}}});
+  out.push_back({"mqtt", "cert_file", "this client's certificate", TextField{&mqtt.cert_file, {}}});
+  out.push_back({"mqtt", "key_file", "and its key", TextField{&mqtt.key_file, {}}});
+}
+
 void add_alarm(AlarmSettings& alarm, Fields& out) {
   constexpr Limits kForce{1.0, 1e9};
   constexpr Limits kPercent{0.1, 1000.0};
@@ -244,6 +259,7 @@ std::vector<Field> fields(Config& config) {
   add_blackbox(config.blackbox, out);
   add_live(config.live, out);
   add_serve(config.serve, out);
+  add_mqtt(config.mqtt, out);
   add_alarm(config.alarm, out);
   add_gpio(config.gpio, out);
   return out;

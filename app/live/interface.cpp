@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/live/interface.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -10,6 +12,7 @@
 #include "app/live/digital_lines.hpp"
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
+#include "app/mqtt/publisher.hpp"
 #include "app/record/frames.hpp"
 #include "app/run/disk.hpp"
 #include "app/run/json.hpp"
@@ -97,6 +100,7 @@ Identified identify_live(const Config& config, const std::string& interface,
   LiveOptions live = options;
   live.record = !place.blackbox.empty();
   const auto serving = open_serving(config);
+  const auto mqtt = open_mqtt(config);
   LiveOutlets outlets;
   outlets.begin = [&](Recorder& recorder) {
     lines.start(recorder);
@@ -123,7 +127,11 @@ Identified identify_live(const Config& config, const std::string& interface,
     progress.show({}, 0.0, line);
     const std::string text = to_json(result);
     if (serving) serving->publish(result, text);
+    if (mqtt) mqtt->publish(text);
     publish_files(place, result, text);
+  };
+  outlets.alarm = [&](const AlarmChange& change, double time_s) {
+    if (mqtt) mqtt->tell(change, time_s);
   };
   LiveParts parts{interface, source.get(), sink.get(),
                   &clock,    run_time,     inputs_of(config, interface)};
@@ -131,6 +139,12 @@ Identified identify_live(const Config& config, const std::string& interface,
   LiveRun run{config, assembler, parts, live, std::move(outlets)};
   Identified found = run.run();
   lines.describe(found.result);
+  if (mqtt) {
+    mqtt->end(to_json(found.result));
+    if (const std::uint64_t lost = mqtt->waiting() + mqtt->dropped(); lost > 0)
+      found.result.warnings.push_back(
+          fmt::format("MQTT: {} alarms have not reached the broker.", lost));
+  }
   return found;
 }
 

@@ -128,6 +128,7 @@ void LiveRun::raise_alarms(RunResult& result) {
     recorder_.add(
         {now_ns, change.kind(), change.number, std::llround(change.watch.value.value_or(0.0))});
     static_cast<void>(alarm_program_.start(change, result.duration_s));
+    if (outlets_.alarm) outlets_.alarm(change, result.duration_s);
   }
   result.watched = alarms_.states();
   if (alarm_program_.failures() > 0)

@@ -56,6 +56,8 @@ struct LiveOutlets {
   std::function<void(Recorder&)> begin{};  ///< the threads run
   /// Every publish_every_s. What it throws is counted and told as an event, and ends no run.
   std::function<void(const RunResult&)> publish{};
+  /// An alarm was raised or went, at that time of the record.
+  std::function<void(const AlarmChange&, double)> alarm{};
   /// Some times a second.
   std::function<void(const LiveTurn&)> turn{};
   std::function<void()> rotated{};  ///< after SIGHUP

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -67,8 +68,11 @@ class Replay {
 
  private:
   [[nodiscard]] WallClock::duration publish_interval() const {
-    return std::chrono::duration_cast<WallClock::duration>(
-        duration<double>{options_.publish_every_s});
+    constexpr double kOfRecordS = 10.0;
+    const double of_record = options_.speed > 0.0 ? kOfRecordS / options_.speed : 0.0;
+    const double every_s = options_.publish_every_s > 0.0 ? options_.publish_every_s
+                                                          : std::clamp(of_record, 0.5, kOfRecordS);
+    return std::chrono::duration_cast<WallClock::duration>(duration<double>{every_s});
   }
 
   template <class Item>

@@ -2,8 +2,8 @@
 #pragma once
 #include <cstddef>
 #include <functional>
-#include <ostream>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include "app/run/state.hpp"

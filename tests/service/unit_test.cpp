@@ -65,16 +65,18 @@ TEST(Unit, IsRightInTheEyesOfSystemd) {
   EXPECT_NE(wrong.output, "") << "and something of one that is not";
 }
 
-TEST(Unit, WithServingIsRightAndStillWellConfined) {
+TEST(Unit, WithWhatOpensTheNetworkIsRightAndStillWellConfined) {
   if (!has_program("systemd-analyze")) GTEST_SKIP() << "systemd-analyze is not installed";
   const Folder folder;
   const std::string here = std::regex_replace(unit(), std::regex{"ExecStart=[^ ]*"},
                                               "ExecStart=" DAMPLINE_BINARY_DIR "/dampline");
-  const std::string serving = here + "\n" + text_of(DAMPLINE_SOURCE_DIR "/app/service/serve.conf");
-  const Ended verify = shell("systemd-analyze verify --man=no " + write_instance(folder, serving) +
-                             " 2>&1 | grep dampline");
-  EXPECT_EQ(verify.output, "");
-  EXPECT_LT(exposure(write_instance(folder, serving)), kMostExposure);
+  for (const char* const drop_in : {"/app/service/serve.conf", "/app/service/mqtt.conf"}) {
+    const std::string opened = here + "\n" + text_of(std::string{DAMPLINE_SOURCE_DIR} + drop_in);
+    const Ended verify = shell("systemd-analyze verify --man=no " +
+                               write_instance(folder, opened) + " 2>&1 | grep dampline");
+    EXPECT_EQ(verify.output, "") << drop_in;
+    EXPECT_LT(exposure(write_instance(folder, opened)), kMostExposure) << drop_in;
+  }
   EXPECT_EQ(unit().find("AF_INET"), std::string::npos) << "what nobody asked for is closed";
 }
 
