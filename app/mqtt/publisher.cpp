@@ -20,7 +20,9 @@ namespace {
 
 constexpr int kConfirmed = 1;  // quality of service: at least once
 constexpr bool kRetained = true;
+constexpr int kTurnMs = 50;
 constexpr std::chrono::seconds kAgain{1};
+constexpr std::chrono::seconds kAgainMost{30};
 
 /// A level of a topic.
 std::string level(std::string text) {
@@ -82,26 +84,26 @@ MqttPublisher::MqttPublisher(const Config& config)
     throw UsageError{fmt::format("[mqtt] topic: found {}, expected a topic without + and #",
                                  drivers::quote(config.mqtt.topic))};
   prepare(config.mqtt);
-  first_ = std::jthread{[this, broker](const std::stop_token& stop) {
-    while (!stop.stop_requested() && !begin(broker.host, broker.port)) {
-      std::unique_lock lock{mutex_};
-      confirmed_.wait_for(lock, stop, kAgain, [] { return false; });
-    }
-  }};
+  thread_ = std::jthread{
+      [this, broker](const std::stop_token& stop) { work(stop, broker.host, broker.port); }};
 }
 
-/// The library's own thread comes back by itself where a connection ends, but is lost where the
-/// first one is refused.
-bool MqttPublisher::begin(const std::string& host, int port) {
+/// Connects, talks for as long as that goes, waits, and again.
+void MqttPublisher::work(const std::stop_token& stop, const std::string& host, int port) {
   constexpr int kAliveS = 30;
-  if (mosquitto_connect_async(client_.get(), host.c_str(), port, kAliveS) != MOSQ_ERR_SUCCESS)
-    return false;
-  begun_ = mosquitto_loop_start(client_.get()) == MOSQ_ERR_SUCCESS;
-  return true;
+  std::chrono::seconds wait = kAgain;
+  while (!stop.stop_requested()) {
+    const int code = mosquitto_connect_async(client_.get(), host.c_str(), port, kAliveS);
+    while (code == MOSQ_ERR_SUCCESS && !stop.stop_requested() &&
+           mosquitto_loop(client_.get(), kTurnMs, 1) == MOSQ_ERR_SUCCESS)
+      if (connected()) wait = kAgain;
+    std::unique_lock lock{mutex_};
+    confirmed_.wait_for(lock, stop, wait, [] { return false; });
+    wait = std::min(2 * wait, kAgainMost);
+  }
 }
 
 void MqttPublisher::prepare(const MqttSettings& settings) {
-  constexpr unsigned kAgainMostS = 30;
   mosquitto_lib_init();
   client_.reset(mosquitto_new(nullptr, true, this));
   if (!client_) throw RunError{"MQTT: no client can be made"};
@@ -110,7 +112,7 @@ void MqttPublisher::prepare(const MqttSettings& settings) {
   mosquitto_will_set(client, (base_ + "/status").c_str(), static_cast<int>(will.size()),
                      will.data(), kConfirmed, kRetained);
   set_security(settings);
-  mosquitto_reconnect_delay_set(client, kAgain.count(), kAgainMostS, true);
+  mosquitto_threaded_set(client, true);
   mosquitto_connect_callback_set(client, [](mosquitto* /*client*/, void* self, int code) {
     static_cast<MqttPublisher*>(self)->on_connect(code);
   });
@@ -142,12 +144,15 @@ void MqttPublisher::set_security(const MqttSettings& settings) {
 }
 
 MqttPublisher::~MqttPublisher() {
-  first_.request_stop();
-  first_.join();
+  thread_.request_stop();
+  thread_.join();
   // Of a run that did not end the broker tells the last will.
-  const bool polite = status_ != "online" && connected();
-  if (polite) mosquitto_disconnect(client_.get());
-  if (begun_) mosquitto_loop_stop(client_.get(), !polite);
+  if (status_ != "online" && connected()) {
+    mosquitto_disconnect(client_.get());
+    constexpr int kMostTurns = 20;
+    for (int i = 0; i < kMostTurns; ++i)
+      if (mosquitto_loop(client_.get(), kTurnMs, 1) != MOSQ_ERR_SUCCESS) break;
+  }
   client_.reset();
   mosquitto_lib_cleanup();
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -50,7 +51,7 @@ class MqttPublisher {
     std::string text;
     int number{0};  ///< of its message; 0: not sent yet
   };
-  [[nodiscard]] bool begin(const std::string& host, int port);
+  void work(const std::stop_token& stop, const std::string& host, int port);
   void prepare(const MqttSettings& settings);
   void set_security(const MqttSettings& settings);
   void on_connect(int code);
@@ -71,8 +72,7 @@ class MqttPublisher {
   std::string status_{"online"};
   std::deque<Alarm> alarms_;
   std::uint64_t dropped_{0};
-  bool begun_{false};   // the library's thread; of first_, then of the destructor
-  std::jthread first_;  // until the library's thread runs
+  std::jthread thread_;
 };
 
 /// As [mqtt] says; null: nobody is told.
