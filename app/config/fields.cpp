@@ -57,7 +57,7 @@ void add_record(RecordLabels& record, Fields& out) {
   out.push_back({"record", "vehicle", "whose record it is: number of the car, or of the rig",
                  TextField{&record.vehicle, {}}});
   out.push_back({"record", "truck", "which truck of it", TextField{&record.truck, {}}});
-  out.push_back({"record", "load", "\"laden\", \"empty\": what merges are grouped by",
+  out.push_back({"record", "load", R"("laden", "empty": what merges are grouped by)",
                  TextField{&record.load, {}}});
   out.push_back({"record", "note", "anything that a reader should know: route, parts changed",
                  TextField{&record.note, {}}});

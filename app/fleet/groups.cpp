@@ -78,6 +78,7 @@ std::vector<By> parse_by(const std::string& words) {
 
 std::string Group::name() const {
   std::vector<std::string> names;
+  names.reserve(labels.size());
   for (const std::string& label : labels) names.push_back(plain(label));
   return fmt::format("{}", fmt::join(names, "."));
 }
@@ -86,10 +87,12 @@ std::vector<Group> group(std::vector<Leaf> leaves, const std::vector<By>& by) {
   std::map<std::vector<std::string>, std::vector<Leaf>> found;
   for (Leaf& leaf : leaves) {
     std::vector<std::string> labels;
+    labels.reserve(by.size());
     for (const By key : by) labels.push_back(label_of(leaf.about, key));
     found[labels].push_back(std::move(leaf));
   }
   std::vector<Group> out;
+  out.reserve(found.size());
   for (auto& [labels, list] : found) out.push_back({labels, std::move(list)});
   return out;
 }

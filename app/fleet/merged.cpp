@@ -187,6 +187,7 @@ RunFiles files_of(const Merged& merged, std::span<const Leaf> leaves,
   RunResult result = describe(merged, leaves);
   result.warnings.insert(result.warnings.end(), notes.begin(), notes.end());
   std::vector<InputFile> inputs;
+  inputs.reserve(sources.size());
   for (const std::string& source : sources) inputs.push_back({source, "state", 0, ""});
   StateAbout about = merged.about;
   if (about.segments > 1) {

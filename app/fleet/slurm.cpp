@@ -35,8 +35,7 @@ fs::path find_program(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders{path == nullptr ? "/usr/bin" : path};
   for (std::string folder; std::getline(folders, folder, ':');)
-    if (const fs::path file = fs::path{folder} / name; ::access(file.c_str(), X_OK) == 0)
-      return file;
+    if (fs::path file = fs::path{folder} / name; ::access(file.c_str(), X_OK) == 0) return file;
   throw RunError{fmt::format("{}: is in no folder of PATH; Slurm brings it", name)};
 }
 
@@ -60,6 +59,7 @@ std::string output_of(std::vector<std::string> words) {
   ::posix_spawn_file_actions_adddup2(&actions, to.get(), STDOUT_FILENO);
   ::posix_spawn_file_actions_adddup2(&actions, to.get(), STDERR_FILENO);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const fs::path program = find_program(words.front());

@@ -5,7 +5,6 @@
 #include <bit>
 #include <deque>
 #include <future>
-#include <ranges>
 #include <thread>
 #include <utility>
 
@@ -23,8 +22,8 @@ void Tree::push(Node node, const std::string& origin) {
 
 std::unique_ptr<Statistics> Tree::total() const {
   auto right = std::make_unique<Statistics>(*nodes_.back().sums);
-  for (const Node& node : nodes_ | std::views::reverse | std::views::drop(1)) {
-    auto left = std::make_unique<Statistics>(*node.sums);
+  for (std::size_t i = nodes_.size() - 1; i-- > 0;) {
+    auto left = std::make_unique<Statistics>(*nodes_[i].sums);
     merge_state(*left, *right, "a merge");
     right = std::move(left);
   }

@@ -82,6 +82,12 @@ std::vector<InputFile> inputs_of(const Config& config, const std::string& interf
   return out;
 }
 
+void end_mqtt(MqttPublisher& mqtt, RunResult& result) {
+  mqtt.end(to_json(result));
+  if (const std::uint64_t lost = mqtt.waiting() + mqtt.dropped(); lost > 0)
+    result.warnings.push_back(fmt::format("MQTT: {} alarms have not reached the broker.", lost));
+}
+
 }  // namespace
 
 Identified identify_live(const Config& config, const std::string& interface,
@@ -139,12 +145,7 @@ Identified identify_live(const Config& config, const std::string& interface,
   LiveRun run{config, assembler, parts, live, std::move(outlets)};
   Identified found = run.run();
   lines.describe(found.result);
-  if (mqtt) {
-    mqtt->end(to_json(found.result));
-    if (const std::uint64_t lost = mqtt->waiting() + mqtt->dropped(); lost > 0)
-      found.result.warnings.push_back(
-          fmt::format("MQTT: {} alarms have not reached the broker.", lost));
-  }
+  if (mqtt) end_mqtt(*mqtt, found.result);
   return found;
 }
 

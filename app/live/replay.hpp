@@ -10,10 +10,10 @@
 namespace dampline::app {
 
 struct ReplayOptions {
-  double speed{1.0};             ///< times real time; 0: as fast as it goes
+  double speed{1.0};  ///< times real time; 0: as fast as it goes
   /// Of the clock on the wall; 0: 10 s of the record, but 0.5 to 10 s.
   double publish_every_s{0.0};
-  bool end{false};               ///< with the record, not on a signal
+  bool end{false};  ///< with the record, not on a signal
   bool show_progress{false};
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "app/run/result.hpp"
 #include "dampline/estimate/statistics.hpp"
@@ -18,7 +18,11 @@ struct Segment {
   std::int64_t start_ns{0};    ///< of the first sample, UTC since 1970; 0: its record has no date
   std::uint64_t record{0};     ///< by which a record without a date is known: the beginning of its
                                ///< SHA-256; else 0
-  auto operator<=>(const Segment&) const = default;
+  bool operator==(const Segment&) const = default;
+  bool operator<(const Segment& other) const {
+    return std::tie(vehicle, truck, start_ns, record) <
+           std::tie(other.vehicle, other.truck, other.start_ns, other.record);
+  }
 };
 
 /// What a state is of, beside its sums.

@@ -78,7 +78,8 @@ void add_replay_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--speed", flags->replay.speed, "times real time; 0: as fast as it goes")
       ->check(CLI::Range(0.0, kMostSpeed))
       ->capture_default_str();
-  verb->add_option("--publish-every", flags->replay.publish_every_s, "s between two results; default: 10 s of the record, but 0.5 to 10 s")
+  verb->add_option("--publish-every", flags->replay.publish_every_s,
+                   "s between two results; default: 10 s of the record, but 0.5 to 10 s")
       ->check(CLI::Range(0.1, 1e6));
   verb->add_flag("--end", flags->replay.end, "end with the record, not on a signal");
   verb->add_option("--config", flags->config,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The live run over interfaces: no bus, a simulated source, a sink in memory.
 #include "app/live/live_run.hpp"
-#include "app/run/state.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +16,7 @@
 #include "app/diagnosis/truck/explanation.hpp"
 #include "app/error.hpp"
 #include "app/record/frames.hpp"
+#include "app/run/state.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/candump/line.hpp"
 #include "drivers/os/system_clock.hpp"

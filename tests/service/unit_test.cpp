@@ -72,8 +72,8 @@ TEST(Unit, WithWhatOpensTheNetworkIsRightAndStillWellConfined) {
                                               "ExecStart=" DAMPLINE_BINARY_DIR "/dampline");
   for (const char* const drop_in : {"/app/service/serve.conf", "/app/service/mqtt.conf"}) {
     const std::string opened = here + "\n" + text_of(std::string{DAMPLINE_SOURCE_DIR} + drop_in);
-    const Ended verify = shell("systemd-analyze verify --man=no " +
-                               write_instance(folder, opened) + " 2>&1 | grep dampline");
+    const Ended verify = shell("systemd-analyze verify --man=no " + write_instance(folder, opened) +
+                               " 2>&1 | grep dampline");
     EXPECT_EQ(verify.output, "") << drop_in;
     EXPECT_LT(exposure(write_instance(folder, opened)), kMostExposure) << drop_in;
   }
