@@ -9,11 +9,15 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <memory>
+#include <random>
 #include <regex>
 #include <sstream>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -100,6 +104,8 @@ class Socket {
     return connected_ && ::send(file_, text.data(), text.size(), MSG_NOSIGNAL) ==
                              static_cast<ssize_t>(text.size());
   }
+  /// Nothing more will be sent.
+  void end() const { ::shutdown(file_, SHUT_WR); }
   /// At most `most` bytes; empty at the end.
   [[nodiscard]] std::string read(std::size_t most) const {
     std::string out(most, '\0');
@@ -113,13 +119,110 @@ class Socket {
   bool connected_{false};
 };
 
-std::string get(const std::string& where, const std::string& path) {
+std::string get(const std::string& where, const std::string& path, const std::string& more = "") {
   const Socket socket{where};
-  if (!socket.send("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"))
+  if (!socket.send("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + more +
+                   "\r\n"))
     return "";
   std::string out;
   for (std::string part = socket.read(65536); !part.empty(); part = socket.read(65536)) out += part;
   return out;
+}
+
+/// A request that somebody meant well, and what line noise and an enemy make of it.
+class Requests {
+ public:
+  explicit Requests(std::uint64_t seed) : random_{seed} {}
+  std::string next() {
+    std::string text =
+        pick({"GET /live.json HTTP/1.1\r\nHost: localhost\r\n\r\n", "GET /metrics HTTP/1.0\r\n\r\n",
+              "GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n"
+              "Last-Event-ID: 7\r\n\r\n",
+              "GET /?token=wrong HTTP/1.1\r\nHost: localhost\r\nCookie: token=wrong\r\n"
+              "Authorization: Bearer wrong\r\n\r\n",
+              "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999\r\n\r\nx",
+              "PUT /live.json HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffff\r\n"});
+    for (std::size_t changes = below(6); changes-- > 0;) change(text);
+    return text;
+  }
+
+ private:
+  std::size_t below(std::size_t end) {
+    return std::uniform_int_distribution<std::size_t>{0, end - 1}(random_);
+  }
+  std::string pick(std::initializer_list<const char*> list) {
+    return list.begin()[below(list.size())];
+  }
+  void change(std::string& text) {
+    const std::size_t at = below(text.size() + 1);
+    switch (below(6)) {
+      case 0:
+        if (at < text.size()) text[at] = static_cast<char>(below(256));
+        break;
+      case 1:
+        text.insert(at,
+                    pick({"\r\n", "\n", "\r", "\0", " ", "%", "%00", "%2e%2e/", ":", "\xff\xfe"}));
+        break;
+      case 2:
+        text.resize(at);
+        break;
+      case 3:
+        text.insert(at, std::string(below(40000), "A/%:\r"[below(5)]));
+        break;
+      case 4:
+        text.insert(
+            at, pick({"Content-Length: -1\r\n", "Content-Length: 18446744073709551616\r\n",
+                      "Host: \r\n", "Transfer-Encoding: chunked\r\n", "Expect: 100-continue\r\n",
+                      "Upgrade: websocket\r\n", "Range: bytes=0-,-9\r\n"}));
+        break;
+      default:
+        text += text;
+    }
+  }
+  std::mt19937_64 random_;
+};
+
+std::size_t resident_kib() {
+  std::ifstream status{"/proc/self/status"};
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmRSS:")) return std::stoul(line.substr(6));
+  return 0;
+}
+
+/// DAMPLINE_REQUESTS: how many; 100,000 take some minutes.
+TEST(Serving, NoWrongRequestGetsAnAnswerOrMemory) {
+  constexpr std::size_t kMostGrowthKib = 4096;
+  const char* asked = std::getenv("DAMPLINE_REQUESTS");
+  const std::size_t count = asked == nullptr ? 2000 : std::stoul(asked);
+  Config config = served();
+  config.serve.token_file =
+      (std::filesystem::temp_directory_path() / fmt::format("hostile_{}", ::getpid())).string();
+  std::ofstream{config.serve.token_file} << "0123456789abcdef\n";
+  const Serving serving{config};
+  std::filesystem::remove(config.serve.token_file);
+  const auto is_well = [&] {
+    return get(serving.where(), "/metrics", "Authorization: Bearer 0123456789abcdef\r\n")
+        .starts_with("HTTP/1.1 200");
+  };
+  ASSERT_TRUE(is_well());
+  Requests requests{24};
+  std::size_t after_some_kib = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string request = requests.next();
+    {
+      const Socket socket{serving.where()};
+      static_cast<void>(socket.send(request));
+      socket.end();
+      const std::string reply = socket.read(64);
+      ASSERT_FALSE(reply.starts_with("HTTP/1.1 2")) << i << ": " << reply << request.substr(0, 200);
+    }
+    if (i == count / 10) after_some_kib = resident_kib();
+    if (i % 500 == 0) {
+      ASSERT_TRUE(is_well()) << i;
+    }
+  }
+  EXPECT_TRUE(is_well());
+  EXPECT_LT(resident_kib(), after_some_kib + kMostGrowthKib);
 }
 
 /// Slow enough for a writer and for people who look on.
