@@ -238,7 +238,7 @@ TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
   std::mt19937_64 random{54};
   std::normal_distribution<double> noise;
   std::string text = "time_s,deflection_m,force_n\n";
-  for (int i = 0; i < 30000; ++i) {
+  for (int i = 0; i < 10000; ++i) {
     const double cycle = std::fmod(i / kRateHz * 0.5, 1.0);
     const double x = 0.01 * (cycle < 0.5 ? 4.0 * cycle - 1.0 : 3.0 - 4.0 * cycle);
     const double v = cycle < 0.5 ? 0.02 : -0.02;
