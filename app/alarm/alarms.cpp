@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kFaultFreshS = 30.0;  // the guards name a fault so long after it, at most
 
-const Parameter* find_coulomb(const RunResult& result) {
-  const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
-                                  [](const Parameter& p) { return p.name == "coulomb"; });
-  return found == result.parameters.end() ? nullptr : &*found;
-}
-
 /// Of the run that later ones are held against.
 double reference_level_n(const std::string& run) {
   RunResult result;
@@ -28,7 +22,7 @@ double reference_level_n(const std::string& run) {
   } catch (const RunError& error) {
     throw UsageError{fmt::format("[alarm] reference: {}", error.what())};
   }
-  const Parameter* coulomb = find_coulomb(result);
+  const Parameter* coulomb = find_parameter(result.parameters, "coulomb");
   if (coulomb == nullptr || !(coulomb->value > 0.0))
     throw UsageError{
         fmt::format("[alarm] reference: {}: found no level, expected a truck's run", run)};
@@ -105,7 +99,7 @@ std::optional<bool> Alarms::seen(Rule& rule, const RunResult& result) const {
 
 /// Between the limit and the hysteresis everything stays as it is.
 std::optional<bool> Alarms::level_seen(Rule& rule, const RunResult& result) const {
-  const Parameter* coulomb = find_coulomb(result);
+  const Parameter* coulomb = find_parameter(result.parameters, "coulomb");
   rule.state.value.reset();
   if (coulomb == nullptr || result.trust == Trust::kNotIdentified) return {};
   rule.state.value = coulomb->value;

@@ -22,12 +22,6 @@
 namespace dampline::app::compare {
 namespace {
 
-const Parameter* find(const RunResult& result, const std::string& name) {
-  const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
-                                  [&](const Parameter& p) { return p.name == name; });
-  return found == result.parameters.end() ? nullptr : &*found;
-}
-
 StatisticsHeader basis_of(const std::string& run) {
   const auto statistics = std::make_unique<Statistics>();
   load_state(std::filesystem::path{run} / "state.dls", *statistics);
@@ -46,7 +40,8 @@ std::string objection(const Run& first, const Run& other) {
   if (a.kind != b.kind || a.row_method.has_value() != b.row_method.has_value())
     return fmt::format("is a {} run, expected a {}", kind_text(b), kind_text(a));
   for (const Parameter& p : b.parameters)
-    if (const Parameter* same = find(a, p.name); same != nullptr && same->unit != p.unit)
+    if (const Parameter* same = find_parameter(a.parameters, p.name);
+        same != nullptr && same->unit != p.unit)
       return fmt::format("{} is in {}, expected {}", p.name, p.unit, same->unit);
   if (a.kind != "truck") return "";
   const double mass = first.config.car.moving_mass_kg;
@@ -84,23 +79,24 @@ std::vector<Run> read_runs(const std::vector<std::string>& directories) {
 }
 
 std::optional<Parameter> level_of(const RunResult& result) {
-  if (const Parameter* common = find(result, "coulomb"); common != nullptr) return *common;
-  const Parameter* forward = find(result, "coulomb_positive");
-  const Parameter* back = find(result, "coulomb_negative");
+  if (const Parameter* common = find_parameter(result.parameters, "coulomb"); common != nullptr)
+    return *common;
+  const Parameter* forward = find_parameter(result.parameters, "coulomb_positive");
+  const Parameter* back = find_parameter(result.parameters, "coulomb_negative");
   if (forward == nullptr || back == nullptr) return std::nullopt;
   return Parameter{"coulomb", 0.5 * (forward->value + back->value),
                    0.5 * std::hypot(forward->std, back->std), forward->unit};
 }
 
 std::optional<Parameter> stiffness_of(const RunResult& result) {
-  const Parameter* found = find(result, "stiffness");
+  const Parameter* found = find_parameter(result.parameters, "stiffness");
   return found == nullptr ? std::nullopt : std::optional{*found};
 }
 
 std::vector<Difference> differences(const RunResult& first, const RunResult& other) {
   std::vector<Difference> out;
   for (const Parameter& a : first.parameters) {
-    const Parameter* b = find(other, a.name);
+    const Parameter* b = find_parameter(other.parameters, a.name);
     if (b == nullptr) continue;
     const double value = b->value - a.value;
     const double std = std::hypot(a.std, b->std);
@@ -170,7 +166,9 @@ std::vector<std::vector<std::string>> overview(const std::vector<Run>& runs) {
 std::vector<std::vector<std::string>> difference_table(const std::vector<Run>& runs) {
   std::vector<std::vector<std::string>> rows{{"run"}};
   for (const Parameter& p : runs.front().result.parameters) {
-    const auto has = [&](const Run& run) { return find(run.result, p.name) != nullptr; };
+    const auto has = [&](const Run& run) {
+      return find_parameter(run.result.parameters, p.name) != nullptr;
+    };
     if (std::any_of(runs.begin() + 1, runs.end(), has)) rows.front().push_back(p.name);
   }
   if (rows.front().size() == 1) return {};

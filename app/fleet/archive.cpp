@@ -68,15 +68,6 @@ Log log_of(const fs::path& file) {
           fmt::format("{}-{:016x}", file.stem().string().substr(0, 80), hash_of(identity))};
 }
 
-void find_below(const fs::path& folder, std::vector<Log>& out) {
-  std::error_code error;
-  fs::recursive_directory_iterator at{folder, error};
-  for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error))
-    if (is_record(at->path()) && at->is_regular_file(error)) out.push_back(log_of(at->path()));
-  if (error)
-    throw RunError{fmt::format("{}: cannot be read: {}", folder.string(), error.message())};
-}
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -136,10 +127,12 @@ std::vector<Log> find_logs(const std::vector<std::string>& sources) {
   std::vector<Log> out;
   for (const std::string& source : sources) {
     std::error_code error;
-    if (fs::is_directory(source, error))
-      find_below(source, out);
-    else
+    if (!fs::is_directory(source, error)) {
       out.push_back(log_of(source));
+      continue;
+    }
+    for (const fs::path& file : files_below(source))
+      if (is_record(file)) out.push_back(log_of(file));
   }
   std::sort(out.begin(), out.end(), [](const Log& a, const Log& b) {
     return std::tie(b.bytes, a.name) < std::tie(a.bytes, b.name);

@@ -40,15 +40,8 @@ std::string label_of(const StateAbout& about, By by) {
 }
 
 /// A name that a directory may have, and a cell of a table.
-std::string plain(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) {
-        return c == '/' || c == '.' || c == ' ' || c == ',' || c == '"' ||
-               static_cast<unsigned char>(c) < 0x20U;
-      },
-      '_');
-  return text.empty() ? "unknown" : text;
+std::string plain(const std::string& text) {
+  return text.empty() ? "unknown" : without(text, "/. ,\"");
 }
 
 double hours(const RunResult& result) {
@@ -145,10 +138,8 @@ std::string to_json(const std::vector<By>& by, const std::vector<GroupRow>& rows
       one["parameters"].push_back(parameter_json(p.name, {p.value, p.std}, p.unit));
     one["run"] = row.run;
   }
-  Json left = Json::array();
-  for (const LeftOut& state : left_out)
-    left.push_back({{"state", state.file.string()}, {"reason", state.reason}});
-  return json_text({{"schema", "dampline.merge/1"}, {"groups", groups}, {"left_out", left}});
+  return json_text(
+      {{"schema", "dampline.merge/1"}, {"groups", groups}, {"left_out", to_json(left_out)}});
 }
 
 }  // namespace dampline::app::fleet

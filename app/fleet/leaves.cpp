@@ -8,12 +8,14 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <tuple>
 #include <utility>
 
 #include "app/error.hpp"
 #include "app/fleet/database.hpp"
+#include "app/run/disk.hpp"
 #include "app/text/format.hpp"
 #include "drivers/checksum/crc32c.hpp"
 
@@ -30,21 +32,8 @@ struct Found {
   bool named{false};
 };
 
-void find_below(const fs::path& folder, std::vector<Found>& out) {
-  std::error_code error;
-  fs::recursive_directory_iterator at{folder, error};
-  for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
-    const std::string name = at->path().filename().string();
-    if (name.starts_with('.')) {  // what is being written
-      if (at->is_directory(error)) at.disable_recursion_pending();
-      continue;
-    }
-    if (at->path().extension() == kSuffix && at->is_regular_file(error))
-      out.push_back({at->path(), false});
-  }
-  if (error)
-    throw RunError{fmt::format("{}: cannot be read: {}", folder.string(), error.message())};
-}
+/// What is being written.
+bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
 
 std::vector<Found> find_states(const std::vector<std::string>& sources) {
   std::vector<Found> out;
@@ -55,7 +44,8 @@ std::vector<Found> find_states(const std::vector<std::string>& sources) {
     } else if (fs::exists(fs::path{source} / "run.toml", error)) {
       out.push_back({fs::path{source} / "state.dls", true});
     } else {
-      find_below(source, out);
+      for (fs::path& file : files_below(source, is_hidden))
+        if (file.extension() == kSuffix) out.push_back({std::move(file), false});
     }
   }
   std::sort(out.begin(), out.end(), [](const Found& a, const Found& b) { return a.file < b.file; });
@@ -102,6 +92,13 @@ std::function<std::string()> file_reader(const fs::path& file) {
 }
 
 bool comes_before(const Leaf& a, const Leaf& b) { return order(a) < order(b); }
+
+nlohmann::ordered_json to_json(const std::vector<LeftOut>& left_out) {
+  auto out = nlohmann::ordered_json::array();
+  for (const LeftOut& state : left_out)
+    out.push_back({{"state", state.file.string()}, {"reason", state.reason}});
+  return out;
+}
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ struct LeftOut {
   std::filesystem::path file;
   std::string reason;
 };
+
+/// [{"state", "reason"}, ...], as merge, archive and collect print it.
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<LeftOut>& left_out);
 
 struct Leaves {
   std::vector<Leaf> list;          ///< in the order of their segments, each segment once

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "app/error.hpp"
@@ -34,19 +33,12 @@ TruckRecord record_of(const Statistics& sums, const StateAbout& about, const Sna
           nominal_hz * correction.ratio,   0,          samples - 1};
 }
 
-Level level_of(const Statistics& sums, double mass_kg) {
-  std::array<const ScaleFactors*, kEntries> entries{};
-  for (std::size_t i = 0; i < kEntries; ++i) entries[i] = &sums.entries[i];
-  return summarise_level(sums.header, sums.total, EntryList{entries}.first(sums.header.entry_count),
-                         {.moving_mass_kg = mass_kg});
-}
-
 Convergence empty_history() { return {{"coulomb", "stiffness"}, {"N", "N/m"}, {}}; }
 
 /// A row for what the tree holds now.
 void add_row(const Tree& tree, const StateAbout& about, Convergence& history) {
   const auto sums = tree.total();
-  const Level level = level_of(*sums, about.moving_mass_kg);
+  const Level level = summarise_level(*sums, {.moving_mass_kg = about.moving_mass_kg});
   if (!level.valid) return;
   const TruckRecord record = record_of(*sums, about, Snapshot{});
   const double factor = record.correction.stiffness();
@@ -108,12 +100,7 @@ Config config_of(const Merged& merged) {
   return config;
 }
 
-std::string cell(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20U; }, '_');
-  return text;
-}
+std::string cell(const std::string& text) { return without(text, ",\""); }
 
 std::string utc_cell(std::int64_t time_ns) { return time_ns == 0 ? "" : utc_text(time_ns); }
 
@@ -160,9 +147,7 @@ RunResult describe(const Merged& merged, std::span<const Leaf> leaves) {
         leaves.front().file.string(), merged.sums->total.blocks, merged.sums->header.entry_count,
         leaves.size(), leaves.front().light ? ", light ones" : "")};
   const TruckRecord record = record_of(*merged.sums, about, snapshot);
-  ModelConfig model;
-  if (about.viscous) model.base = {"coulomb", "viscous"};
-  RunResult result = describe_truck(record, model);
+  RunResult result = describe_truck(record, config_of(merged).model);
   result.origin.recorded = recorded_span(about.segment.start_ns, about.end_ns);
   result.convergence = merged.history;
   const std::size_t trucks = trucks_in(leaves);
@@ -185,15 +170,16 @@ RunResult describe(const Merged& merged, std::span<const Leaf> leaves) {
 RunFiles files_of(const Merged& merged, std::span<const Leaf> leaves,
                   const std::vector<std::string>& sources, const std::vector<std::string>& notes) {
   RunResult result = describe(merged, leaves);
-  result.warnings.insert(result.warnings.end(), notes.begin(), notes.end());
+  for (const std::vector<std::string>& told : {notes, overlaps(leaves)})
+    result.warnings.insert(result.warnings.end(), told.begin(), told.end());
   std::vector<InputFile> inputs;
   inputs.reserve(sources.size());
   for (const std::string& source : sources) inputs.push_back({source, "state", 0, ""});
   StateAbout about = merged.about;
   if (about.segments > 1) {
     about.trust = result.trust;
-    about.coulomb_n = {result.parameters[0].value, result.parameters[0].std};
-    about.stiffness_npm = {result.parameters[1].value, result.parameters[1].std};
+    about.coulomb_n = estimate_of(result.parameters, "coulomb");
+    about.stiffness_npm = estimate_of(result.parameters, "stiffness");
   }
   RunFiles files = make_files(config_of(merged), std::move(result), inputs);
   files.state = encode_state(*merged.sums, about);

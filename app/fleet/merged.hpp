@@ -29,7 +29,8 @@ struct Merged {
 /// RunError where the sums do not suffice: fewer than four entries, which is four light states.
 [[nodiscard]] RunResult describe(const Merged& merged, std::span<const Leaf> leaves);
 
-/// Everything of its run directory; `sources` are what was given. Throws as describe().
+/// Everything of its run directory; `sources` are what was given. `notes`, and what overlaps,
+/// become warnings. Throws as describe().
 [[nodiscard]] RunFiles files_of(const Merged& merged, std::span<const Leaf> leaves,
                                 const std::vector<std::string>& sources,
                                 const std::vector<std::string>& notes);

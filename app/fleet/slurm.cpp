@@ -90,7 +90,7 @@ std::string script(const std::string& name, const fs::path& folder, const char* 
 }  // namespace
 
 SlurmJobs submit_slurm(const fs::path& out, const std::vector<Log>& logs, int tasks, int jobs,
-                       const std::string& arguments) {
+                       const std::vector<std::string>& arguments) {
   const fs::path folder = fs::absolute(out) / "slurm";
   std::error_code error;
   fs::create_directories(folder, error);
@@ -98,9 +98,10 @@ SlurmJobs submit_slurm(const fs::path& out, const std::vector<Log>& logs, int ta
   std::string list;
   for (const Log& log : logs) list += log.file.string() + "\n";
   write_file(folder / "logs.txt", list);
-  const std::string command = fmt::format(
-      "{} archive --list {} --out {} --jobs {} --quiet{}", quoted(program_file().string()),
-      quoted((folder / "logs.txt").string()), quoted(fs::absolute(out).string()), jobs, arguments);
+  std::string command = fmt::format(
+      "{} archive --list {} --out {} --jobs {} --quiet", quoted(program_file().string()),
+      quoted((folder / "logs.txt").string()), quoted(fs::absolute(out).string()), jobs);
+  for (const std::string& argument : arguments) command += fmt::format(" {}", quoted(argument));
   write_file(folder / "task.sh",
              script("dampline-archive", folder, "%a", jobs,
                     fmt::format("{} --part \"$SLURM_ARRAY_TASK_ID/{}\"", command, tasks)));

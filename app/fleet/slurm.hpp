@@ -18,6 +18,7 @@ struct SlurmJobs {
 /// from its environment (SBATCH_PARTITION, SBATCH_ACCOUNT, ...) holds. `arguments` are those of
 /// `dampline archive` beside the logs, --out and --part. Throws RunError with sbatch's words.
 [[nodiscard]] SlurmJobs submit_slurm(const std::filesystem::path& out, const std::vector<Log>& logs,
-                                     int tasks, int jobs, const std::string& arguments);
+                                     int tasks, int jobs,
+                                     const std::vector<std::string>& arguments);
 
 }  // namespace dampline::app::fleet

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/error.hpp"
+#include "app/text/format.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::app {
@@ -25,14 +26,8 @@ constexpr std::chrono::seconds kAgain{1};
 constexpr std::chrono::seconds kAgainMost{30};
 
 /// A level of a topic.
-std::string level(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) {
-        return c == '/' || c == '+' || c == '#' || static_cast<unsigned char>(c) < 0x20U;
-      },
-      '_');
-  return text.empty() ? "unknown" : text;
+std::string level(const std::string& text) {
+  return text.empty() ? "unknown" : without(text, "/+#");
 }
 
 struct Broker {
@@ -190,11 +185,9 @@ void MqttPublisher::end(const std::string& live_json) {
   status_ = "ended";
   if (!connected_) return;
   send(base_ + "/live", live_);
-  int number = 0;
-  send(base_ + "/status", status_, &number);
-  alarms_.push_back({"", "", number});  // the last message; what was sent before is there by then
-  confirmed_.wait_for(lock, kPatience, [&] { return alarms_.empty() || !connected_; });
-  if (!alarms_.empty() && alarms_.back().topic.empty()) alarms_.pop_back();
+  send(base_ + "/status", status_, &last_);  // what was sent before is there by then
+  confirmed_.wait_for(lock, kPatience,
+                      [&] { return (last_ == 0 && alarms_.empty()) || !connected_; });
 }
 
 bool MqttPublisher::connected() const {
@@ -230,7 +223,8 @@ void MqttPublisher::on_disconnect() {
 void MqttPublisher::on_confirmed(int number) {
   const std::lock_guard lock{mutex_};
   std::erase_if(alarms_, [&](const Alarm& alarm) { return alarm.number == number; });
-  if (alarms_.empty()) confirmed_.notify_all();
+  if (number == last_) last_ = 0;
+  confirmed_.notify_all();
 }
 
 void MqttPublisher::send(const std::string& topic, const std::string& text, int* number) const {
@@ -241,7 +235,7 @@ void MqttPublisher::send(const std::string& topic, const std::string& text, int*
 /// What was sent once the library sends again by itself.
 void MqttPublisher::send_waiting() {
   for (Alarm& alarm : alarms_)
-    if (alarm.number == 0 && !alarm.topic.empty()) send(alarm.topic, alarm.text, &alarm.number);
+    if (alarm.number == 0) send(alarm.topic, alarm.text, &alarm.number);
 }
 
 std::unique_ptr<MqttPublisher> open_mqtt(const Config& config) {

@@ -71,6 +71,7 @@ class MqttPublisher {
   std::string live_;
   std::string status_{"online"};
   std::deque<Alarm> alarms_;
+  int last_{0};  ///< number of the message that ends the run; 0: none, or confirmed
   std::uint64_t dropped_{0};
   std::jthread thread_;
 };

@@ -29,9 +29,7 @@ std::vector<double> cell_edges(const std::vector<CurveRow>& curve) {
 
 /// Below this speed the curve is not resolved: the law's width, seen from its middle to its flank.
 double resolved_from_mps(const RunResult& result) {
-  const auto width = std::find_if(result.parameters.begin(), result.parameters.end(),
-                                  [](const Parameter& p) { return p.name == "law_width"; });
-  return width == result.parameters.end() ? 0.0 : 1.5 * width->value;
+  return 1.5 * estimate_of(result.parameters, "law_width").value;
 }
 
 /// What is drawn of a curve.

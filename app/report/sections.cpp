@@ -163,12 +163,6 @@ std::string level_of(const MethodSummary& method) {
   return fmt::format("{} ± {} N", text.value, text.std);
 }
 
-const Parameter* coulomb_of(const RunResult& result) {
-  for (const Parameter& p : result.parameters)
-    if (p.name == "coulomb") return &p;
-  return nullptr;
-}
-
 std::string difference(const MethodSummary& method, const Parameter* coulomb) {
   if (!method.has_level || coulomb == nullptr || coulomb->value == 0.0) return "";
   return fmt::format("{:+.1f} %", 100.0 * (method.level_n.value / coulomb->value - 1.0));
@@ -178,7 +172,7 @@ std::string difference(const MethodSummary& method, const Parameter* coulomb) {
 
 std::string method_section(const RunResult& result) {
   if (result.methods.empty()) return "";
-  const Parameter* coulomb = coulomb_of(result);
+  const Parameter* coulomb = find_parameter(result.parameters, "coulomb");
   std::vector<std::vector<std::string>> rows;
   std::vector<bool> grey;
   for (const MethodSummary& m : result.methods) {

@@ -297,12 +297,6 @@ std::uint64_t record_number(const std::string& sha256) {
   return number;
 }
 
-Estimate estimate_of(const RunResult& result, std::string_view name) {
-  for (const Parameter& p : result.parameters)
-    if (p.name == name) return {p.value, p.std};
-  return {};
-}
-
 StateAbout about_of(const Config& config, const RunResult& result, const Statistics& sums) {
   const Origin& origin = result.origin;
   StateAbout about;
@@ -316,8 +310,8 @@ StateAbout about_of(const Config& config, const RunResult& result, const Statist
   const auto& base = config.model.base;
   about.viscous = std::find(base.begin(), base.end(), "viscous") != base.end();
   about.trust = result.trust;
-  about.coulomb_n = estimate_of(result, "coulomb");
-  about.stiffness_npm = estimate_of(result, "stiffness");
+  about.coulomb_n = estimate_of(result.parameters, "coulomb");
+  about.stiffness_npm = estimate_of(result.parameters, "stiffness");
   return about;
 }
 

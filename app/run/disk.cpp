@@ -116,6 +116,24 @@ fs::path make_partial(const fs::path& parent, const std::string& stem, Descripto
   }
 }
 
+std::vector<std::filesystem::path> files_below(
+    const std::filesystem::path& folder,
+    const std::function<bool(const std::filesystem::path&)>& pass_over) {
+  std::vector<std::filesystem::path> out;
+  std::error_code error;
+  std::filesystem::recursive_directory_iterator at{folder, error};
+  for (; !error && at != std::filesystem::recursive_directory_iterator{}; at.increment(error)) {
+    if (pass_over && pass_over(at->path())) {
+      if (at->is_directory(error)) at.disable_recursion_pending();
+    } else if (at->is_regular_file(error)) {
+      out.push_back(at->path());
+    }
+  }
+  if (error)
+    throw RunError{fmt::format("{}: cannot be read: {}", folder.string(), error.message())};
+  return out;
+}
+
 void remove_stale(const fs::path& parent, const std::string& stem) noexcept {
   std::error_code error;
   for (fs::directory_iterator at{parent, error}; !error && at != fs::directory_iterator{};

@@ -2,8 +2,10 @@
 // Files and directories that appear whole or not at all.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dampline::app {
 
@@ -51,6 +53,12 @@ inline constexpr std::string_view kPartial = ".partial-";
 /// A new directory `parent`/`stem`NUMBER, locked while `lock` is open. Throws IoError.
 [[nodiscard]] std::filesystem::path make_partial(const std::filesystem::path& parent,
                                                  const std::string& stem, Descriptor& lock);
+
+/// The regular files below a folder, to any depth; what `pass_over` says yes to, a folder or a
+/// file, is not looked at. Throws RunError for a folder that cannot be read.
+[[nodiscard]] std::vector<std::filesystem::path> files_below(
+    const std::filesystem::path& folder,
+    const std::function<bool(const std::filesystem::path&)>& pass_over = {});
 
 /// Removes files and directories of that stem which nobody writes any more.
 void remove_stale(const std::filesystem::path& parent, const std::string& stem) noexcept;

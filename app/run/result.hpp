@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -165,6 +166,20 @@ struct Parameter {
   std::string term{};
   double cov{0.0};
 };
+
+/// The parameter of that name; null: there is none.
+[[nodiscard]] inline const Parameter* find_parameter(const std::vector<Parameter>& parameters,
+                                                     std::string_view name) {
+  for (const Parameter& p : parameters)
+    if (p.name == name) return &p;
+  return nullptr;
+}
+/// Its value and deviation; 0, 0: there is none.
+[[nodiscard]] inline Estimate estimate_of(const std::vector<Parameter>& parameters,
+                                          std::string_view name) {
+  const Parameter* const found = find_parameter(parameters, name);
+  return found == nullptr ? Estimate{} : Estimate{found->value, found->std};
+}
 
 /// Otherwise only what the two do together is known.
 [[nodiscard]] inline bool is_separable(const Parameter& p) {

@@ -35,12 +35,6 @@ constexpr double kLeastShakingMps2 = 0.7;  // rms of the wheelsets
 
 using Reasons = std::vector<std::pair<Trust, std::string>>;
 
-const Parameter* find(const RunResult& result, const char* name) {
-  const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
-                                  [&](const Parameter& p) { return p.name == name; });
-  return found == result.parameters.end() ? nullptr : &*found;
-}
-
 bool is_truck(const RunResult& result) { return result.kind == "truck"; }
 
 void judge_data(const Explaining* explaining, const RunResult& result, Reasons& out) {
@@ -50,7 +44,7 @@ void judge_data(const Explaining* explaining, const RunResult& result, Reasons& 
     names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", f.name, f.channel);
   if (faults.lasting || (explaining != nullptr && explaining->withheld))
     out.emplace_back(Trust::kDataFaulty, fmt::format("The data have faults: {}.", names));
-  const Parameter* const coulomb = find(result, "coulomb");
+  const Parameter* const coulomb = find_parameter(result.parameters, "coulomb");
   const std::optional<Magnitudes>& seen = result.magnitudes;
   if (coulomb == nullptr || !seen || !(seen->wheelset_mps2 > 0.0)) return;
   const double share = coulomb->value / seen->weight_n;
@@ -80,7 +74,7 @@ std::string what_to_check(const RunResult& result) {
 
 void judge_numbers(const RunResult& result, Reasons& out) {
   for (const Positive& p : kPositive) {
-    const Parameter* const found = find(result, p.name);
+    const Parameter* const found = find_parameter(result.parameters, p.name);
     if (found == nullptr) continue;
     // A rig's spring or mass that may be none is a finding; a truck has both.
     const bool negative = is_truck(result)
@@ -166,8 +160,8 @@ std::string words(const Parameter& p, double scale, const char* unit) {
 }
 
 std::string truck_numbers(const RunResult& result) {
-  const Parameter* const coulomb = find(result, "coulomb");
-  const Parameter* const stiffness = find(result, "stiffness");
+  const Parameter* const coulomb = find_parameter(result.parameters, "coulomb");
+  const Parameter* const stiffness = find_parameter(result.parameters, "stiffness");
   if (coulomb == nullptr || stiffness == nullptr) return "";
   return fmt::format(
       "Dry friction (Coulomb level) of {} and a spring of {}, identified from {} of record.",

@@ -151,15 +151,10 @@ void LiveView::take(const Motion& motion, std::int64_t first_tick) {
 void LiveView::take(const RunResult& result) {
   constexpr double kMsPerS = 1000.0;
   result_ = result;
-  const auto estimate = [&](std::string_view name) {
-    for (const Parameter& p : result.parameters)
-      if (p.name == name) return Estimate{p.value, p.std};
-    return Estimate{};
-  };
   const auto now_ms = std::llround(kMsPerS * result.duration_s);
-  const Estimate coulomb = estimate("coulomb");
+  const Estimate coulomb = estimate_of(result.parameters, "coulomb");
   if (coulomb.value == 0.0 || !history_.due(now_ms)) return;
-  history_.add(now_ms, {true, coulomb, estimate("stiffness")});
+  history_.add(now_ms, {true, coulomb, estimate_of(result.parameters, "stiffness")});
 }
 
 std::string LiveView::document(std::uint64_t sequence) const {

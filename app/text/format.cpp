@@ -102,6 +102,16 @@ std::string columns_text(const std::vector<std::vector<std::string>>& rows) {
   return out;
 }
 
+std::string without(std::string text, std::string_view unwanted) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [&](char c) {
+        return unwanted.find(c) != std::string_view::npos || static_cast<unsigned char>(c) < 0x20U;
+      },
+      '_');
+  return text;
+}
+
 std::string toml_string(std::string_view text) {
   constexpr unsigned char kDelete = 0x7f;
   std::string out = "\"";

@@ -40,6 +40,9 @@ struct ReadUnit {
 /// columns are left out.
 [[nodiscard]] std::string columns_text(const std::vector<std::vector<std::string>>& rows);
 
+/// Control characters and those of `unwanted` as '_'.
+[[nodiscard]] std::string without(std::string text, std::string_view unwanted);
+
 /// A TOML basic string: in quotes, with what must be escaped escaped.
 [[nodiscard]] std::string toml_string(std::string_view text);
 

@@ -69,11 +69,9 @@ void merge_all(const ArchiveFlags& flags, const fleet::Archive& archive, fleet::
   fleet::Leaves found = fleet::find_leaves({archive.states().string()});
   const std::vector<fleet::Leaf> leaves =
       fleet::check_alike(std::move(found.list), flags.leave_out ? &found.left_out : nullptr);
-  std::vector<std::string> notes = std::move(found.notes);
-  for (std::string& note : fleet::overlaps(leaves)) notes.push_back(std::move(note));
   const fleet::Merged merged =
       fleet::merge_alike(leaves, workers.chunks(leaves, fleet::jobs_or_all(flags.jobs)));
-  RunFiles files = fleet::files_of(merged, leaves, {archive.states().string()}, notes);
+  RunFiles files = fleet::files_of(merged, leaves, {archive.states().string()}, found.notes);
   RunDirectory directory{archive.merged(), true};
   flags.write(files, directory);
   out.left_out = std::move(found.left_out);
@@ -86,9 +84,6 @@ std::string to_json(const Outcome& outcome) {
   Json aside = Json::array();
   for (const auto& log : outcome.set_aside)
     aside.push_back({{"log", log.log}, {"reason", log.reason}});
-  Json left = Json::array();
-  for (const fleet::LeftOut& state : outcome.left_out)
-    left.push_back({{"state", state.file.string()}, {"reason", state.reason}});
   const fleet::Tally& t = outcome.tally;
   return json_text({{"schema", "dampline.archive/1"},
                     {"logs", t.logs},
@@ -97,7 +92,7 @@ std::string to_json(const Outcome& outcome) {
                     {"bytes_read", t.bytes},
                     {"duration_s", t.seconds},
                     {"set_aside", aside},
-                    {"left_out", left},
+                    {"left_out", fleet::to_json(outcome.left_out)},
                     {"run", outcome.run.empty() ? Json{nullptr} : Json(outcome.run)}});
 }
 
@@ -124,14 +119,14 @@ void print_outcome(const ArchiveFlags& flags, const Outcome& outcome) {
 
 int submit(const ArchiveFlags& flags, const fleet::Archive& archive,
            const std::vector<fleet::Log>& logs) {
-  std::string more;
+  std::vector<std::string> more;
   if (!flags.config.empty())
-    more += " --config '" + std::filesystem::absolute(flags.config).string() + "'";
-  if (!flags.folders.empty()) more += " --folders '" + flags.folders + "'";
-  for (const auto& [set, name] : {std::pair{flags.leave_out, " --leave-out"},
-                                  std::pair{flags.skip_bad_lines, " --skip-bad-lines"},
-                                  std::pair{flags.no_report, " --no-report"}})
-    if (set) more += name;
+    more.insert(more.end(), {"--config", std::filesystem::absolute(flags.config).string()});
+  if (!flags.folders.empty()) more.insert(more.end(), {"--folders", flags.folders});
+  for (const auto& [set, name] : {std::pair{flags.leave_out, "--leave-out"},
+                                  std::pair{flags.skip_bad_lines, "--skip-bad-lines"},
+                                  std::pair{flags.no_report, "--no-report"}})
+    if (set) more.emplace_back(name);
   const fleet::SlurmJobs jobs =
       fleet::submit_slurm(flags.out, logs, flags.slurm, std::max(flags.jobs, 1), more);
   fmt::print("{} logs in {} tasks: job {}; merge behind it: job {}; results: {}\n", logs.size(),

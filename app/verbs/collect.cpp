@@ -38,13 +38,13 @@ struct Collected {
 void collect_file(fleet::Database& database, const std::filesystem::path& file, Statistics& scratch,
                   Collected& out) {
   try {
-    const auto read = fleet::file_reader(file);
-    const fleet::Leaf leaf = fleet::leaf_of(file, read, scratch);
+    std::string bytes = fleet::file_reader(file)();
+    const fleet::Leaf leaf = fleet::leaf_of(
+        file, [&bytes] { return bytes; }, scratch);
     if (leaf.about.segments > 1) {
       ++out.merges;
       return;
     }
-    const std::string bytes = read();
     switch (database.put(leaf, bytes)) {
       case fleet::Stored::kNew:
         ++out.fresh;
@@ -65,16 +65,12 @@ void collect_file(fleet::Database& database, const std::filesystem::path& file, 
 void print_collected(const CollectFlags& flags, const fleet::Database& database,
                      const Collected& c) {
   if (flags.json) {
-    using Json = nlohmann::ordered_json;
-    Json refused = Json::array();
-    for (const fleet::LeftOut& state : c.refused)
-      refused.push_back({{"state", state.file.string()}, {"reason", state.reason}});
     fmt::print("{}", json_text({{"schema", "dampline.collect/1"},
                                 {"states_new", c.fresh},
                                 {"states_later", c.later},
                                 {"states_known", c.known},
                                 {"merges_passed_over", c.merges},
-                                {"refused", refused},
+                                {"refused", fleet::to_json(c.refused)},
                                 {"segments", database.states()}}));
     return;
   }

@@ -39,11 +39,9 @@ fleet::GroupRow merge_group(const MergeFlags& options, const fleet::Group& group
   RunDirectory directory{place, options.force};
   const std::vector<fleet::Leaf> leaves =
       fleet::check_alike(group.leaves, options.leave_out ? &left_out : nullptr);
-  std::vector<std::string> told = notes;
-  for (std::string& note : fleet::overlaps(leaves)) told.push_back(std::move(note));
   const fleet::Merged merged = fleet::merge_alike(
       leaves, fleet::chunks_by_threads(leaves, fleet::jobs_or_all(options.jobs)));
-  RunFiles files = fleet::files_of(merged, leaves, options.sources, told);
+  RunFiles files = fleet::files_of(merged, leaves, options.sources, notes);
   if (!options.light.empty())
     write_file(options.light, encode_state(*merged.sums, merged.about, StateKind::kLight));
   options.write(files, directory);

@@ -22,11 +22,7 @@ class Writing {
  public:
   explicit Writing(const std::vector<Parameter>& parameters) : parameters_{parameters} {}
 
-  [[nodiscard]] Estimate get(std::string_view name) const {
-    const auto found = std::find_if(parameters_.begin(), parameters_.end(),
-                                    [&](const Parameter& p) { return p.name == name; });
-    return found == parameters_.end() ? Estimate{0.0, 0.0} : Estimate{found->value, found->std};
-  }
+  [[nodiscard]] Estimate get(std::string_view name) const { return estimate_of(parameters_, name); }
   std::size_t add(const law::Regressor& column, const Estimate& coefficient, bool sharp = false) {
     const std::size_t term = out_.law.terms.size();
     out_.law.terms.push_back({column, coefficient.value, sharp});

@@ -201,11 +201,26 @@ template Level summarise_level(const StatisticsHeader&, const ScaleFactors&, Ent
 template Level summarise_level(const StatisticsHeader&, const ScaleFactors&, GroupedList,
                                const SummaryConfig&) noexcept;
 
-Snapshot summarise(const Statistics& statistics, const SummaryConfig& config) noexcept {
+namespace {
+
+/// Where the entries of statistics lie.
+struct Listed {
+  explicit Listed(const Statistics& statistics) noexcept : count{statistics.header.entry_count} {
+    for (std::size_t i = 0; i < kEntries; ++i) entries[i] = &statistics.entries[i];
+  }
+  [[nodiscard]] EntryList list() const noexcept { return EntryList{entries}.first(count); }
   std::array<const ScaleFactors*, kEntries> entries{};
-  for (std::size_t i = 0; i < kEntries; ++i) entries[i] = &statistics.entries[i];
-  return summarise(statistics.header, statistics.total,
-                   EntryList{entries}.first(statistics.header.entry_count), config);
+  std::size_t count;
+};
+
+}  // namespace
+
+Snapshot summarise(const Statistics& statistics, const SummaryConfig& config) noexcept {
+  return summarise(statistics.header, statistics.total, Listed{statistics}.list(), config);
+}
+
+Level summarise_level(const Statistics& statistics, const SummaryConfig& config) noexcept {
+  return summarise_level(statistics.header, statistics.total, Listed{statistics}.list(), config);
 }
 
 }  // namespace dampline

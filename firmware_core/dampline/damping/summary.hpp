@@ -22,5 +22,7 @@ template <class Entries>
 template <class Entries>
 [[nodiscard]] Level summarise_level(const StatisticsHeader& header, const ScaleFactors& total,
                                     Entries entries, const SummaryConfig& config) noexcept;
+[[nodiscard]] Level summarise_level(const Statistics& statistics,
+                                    const SummaryConfig& config) noexcept;
 
 }  // namespace dampline
