@@ -214,6 +214,9 @@ inline std::vector<GuardCase> timing_cases() {
          any_time(r, x);
          r.faults.delay_step_s[any_channel(x)] = either_sign(x, 0.001, 0.008);
        }},
+      {"jitter 0.1-0.4 ms, all channels",
+       {FaultKind::kJitter},
+       [](R& r, X& x) { r.faults.jitter_s.fill(between(x, 1e-4, 4e-4)); }},
       {"clock drift 30-150 ppm",
        {FaultKind::kClockDrift},
        [](R& r, X& x) { r.faults.clock_drift_ppm[any_channel(x)] = either_sign(x, 30.0, 150.0); }},
@@ -256,6 +259,14 @@ inline std::vector<GuardCase> sound_cases() {
                       : which == 1 ? drift.stiffness_factor
                                    : drift.mass_factor) = factor;
                      if (x.uniform() < 0.5) drift.end_s = drift.start_s + 60.0;
+                   }});
+  cases.push_back({"cant of a curve", {}, [](R& r, X& x) {
+                     any_time(r, x);
+                     r.faults.dc_jump_mps2.fill(either_sign(x, 0.3, 1.0));
+                     r.faults.dc_jump_time_s = between(x, 1.0, 4.0);
+                   }});
+  cases.push_back({"wheels that differ by 1-10 %", {}, [](R& r, X& x) {
+                     r.simulation.incoherent_power = between(x, 0.01, 0.1);
                    }});
   cases.push_back({"rail joints", {}, [](R& r, X& x) {
                      r.simulation.impulses.joint_depth_m = between(x, 0.1e-3, 0.5e-3);

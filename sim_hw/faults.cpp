@@ -205,8 +205,10 @@ double FaultyRecord::delay_samples(std::size_t channel, double time_s) const {
 }
 
 // Whole samples are taken as they are; between them a sinc of 48 taps under a Hann window.
-double FaultyRecord::delayed(std::size_t channel, double time_s) const {
-  const double place = static_cast<double>(source_) - delay_samples(channel, time_s);
+double FaultyRecord::delayed(std::size_t channel, double time_s) {
+  double place = static_cast<double>(source_) - delay_samples(channel, time_s);
+  if (faults_.jitter_s[channel] > 0.0)
+    place += faults_.jitter_s[channel] * kSampleRateHz * random_.normal();
   const double whole = std::floor(place + 0.5);
   const auto n = static_cast<std::int64_t>(whole);
   const double u = place - whole;
@@ -229,7 +231,8 @@ double FaultyRecord::distorted(std::size_t channel, double accel_mps2, double ti
     const double length = std::max(faults_.end_s - faults_.start_s, 1e-9);
     const double progress = std::min((time_s - faults_.start_s) / length, 1.0);
     value *= 1.0 + faults_.gain_step[channel] + faults_.gain_drift[channel] * progress;
-    value += faults_.dc_jump_mps2[channel];
+    const double moved = (time_s - faults_.start_s) / std::max(faults_.dc_jump_time_s, 1e-9);
+    value += faults_.dc_jump_mps2[channel] * std::min(moved, 1.0);
   }
   double noise = faults_.noise_mps2[channel];
   if (begun && time_s < faults_.end_s) noise = std::hypot(noise, faults_.burst_mps2[channel]);

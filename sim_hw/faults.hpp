@@ -71,6 +71,7 @@ struct RecordFaultConfig {
   double start_s{150.0};
   double end_s{180.0};
   std::array<double, kChannels> delay_step_s{};     ///< later (positive) from start_s on
+  std::array<double, kChannels> jitter_s{};         ///< of each sampling instant, rms
   std::array<double, kChannels> clock_drift_ppm{};  ///< delay that grows over the whole record
   std::array<int, kChannels> lost_samples{};        ///< at start_s, in this channel only
   std::array<int, kChannels> repeated_samples{};    ///< at start_s, in this channel only
@@ -81,6 +82,7 @@ struct RecordFaultConfig {
   std::array<double, kChannels> gain_drift{};       ///< reached linearly at end_s, from start_s
   std::array<double, kChannels> saturation_mps2{};  ///< reads s tanh(a / s)
   std::array<double, kChannels> dc_jump_mps2{};
+  double dc_jump_time_s{0.0};                  ///< over which the zero moves: 0, at once
   std::array<double, kChannels> noise_mps2{};  ///< white, more of it, all the time
   std::array<double, kChannels> burst_mps2{};  ///< white, from start_s to end_s
   std::array<int, kChannels> spikes{};         ///< single wrong samples, at random times
@@ -105,7 +107,7 @@ class FaultyRecord {
   void pull();
   [[nodiscard]] const SimulatedSample& at(std::int64_t n) const;
   [[nodiscard]] double delay_samples(std::size_t channel, double time_s) const;
-  [[nodiscard]] double delayed(std::size_t channel, double time_s) const;
+  [[nodiscard]] double delayed(std::size_t channel, double time_s);
   [[nodiscard]] double distorted(std::size_t channel, double accel_mps2, double time_s);
   void convert(SimulatedSample& sample, std::size_t channel, double accel_mps2) const;
   [[nodiscard]] SimulatedSample faulty(std::int64_t n);

@@ -102,9 +102,14 @@ EstimatorConfig estimator_config(const Config& config) {
   return core;
 }
 
+// A standing car's wheelsets show their sensors' noise; in g a running car's show a tenth.
+constexpr double kLeastShakingInGMps2 = 0.1;
+constexpr double kMostShakingInGMps2 = 0.7;
+
 Magnitudes magnitudes_of(const TruckView& view, const Config& config) {
   constexpr double kGravityMps2 = 9.80665;
-  return {view.wheelset_mps2, kGravityMps2 * config.car.moving_mass_kg};
+  return {view.wheelset_mps2, kGravityMps2 * config.car.moving_mass_kg,
+          view.faults.frame_follow.usual};
 }
 
 DataFaults faults_of(const TruckView& view, double nominal_hz) {
@@ -227,8 +232,9 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
                  record, result);
   result.warnings = clipping_.warnings();
   circumstances_ = {last.faults, find_parameter_drift(*statistics(), Estimator::kBlockS)};
-  describe_faults_of_all(core_->guard(), last.faults, circumstances_.drift, record, rate_hz_,
-                         result);
+  hold_against_faults(circumstances_.faults, circumstances_.drift);
+  describe_faults_of_all(core_->guard(), circumstances_.faults, circumstances_.drift, record,
+                         rate_hz_, result);
   describe_alarms(last.alarms, record, result);
   result.excluded = excluded_.list();
   result.excluded_more = excluded_.more();
@@ -253,6 +259,12 @@ void TruckRun<kParts>::fail_unusable(const Snapshot& snapshot, const std::string
     if (!word.empty() && blocks_[i] > 0)
       why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", blocks_[i], word);
   }
+  const double shaking_mps2 = core_->guard().block().wheelset_mps2;
+  const bool may_be_g = shaking_mps2 > kLeastShakingInGMps2 && shaking_mps2 < kMostShakingInGMps2 &&
+                        blocks_[static_cast<std::size_t>(BlockStatus::kStill)] > counts.blocks / 2;
+  if (may_be_g)
+    why += fmt::format("; the wheelsets shake by {:.2g} m/s^2 rms: are the accelerations in g?",
+                       shaking_mps2);
   throw RunError{
       fmt::format("{}: nothing could be identified: {} samples in {} make {} blocks of 2 s, {} of "
                   "them excluded{}; "

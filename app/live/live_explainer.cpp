@@ -72,6 +72,7 @@ void LiveExplainer::run() {
 void LiveExplainer::judge() {
   Explained out;
   circumstances_.drift = find_parameter_drift(*statistics_, Estimator::kBlockS);
+  hold_against_faults(circumstances_.faults, circumstances_.drift);
   TruckView view;
   view.first_tick = run_.first_tick();
   view.faults = circumstances_.faults;

@@ -11,6 +11,7 @@
 #include "app/record/rate.hpp"
 #include "app/record/rows.hpp"
 #include "dampline/motion/decimator.hpp"
+#include "dampline/sample/hole_bridge.hpp"
 
 namespace dampline::app {
 
@@ -45,6 +46,10 @@ class CsvFeed final : public SampleFeed {
     samples_.clear();
     const bool more = rows_.read(batch_);
     for (const TruckRows::Row& row : batch_) hand_on(to_sample(row));
+    if (!more) {
+      bridge_.finish();
+      thin();
+    }
     return {.samples = samples_, .more = more};
   }
   [[nodiscard]] std::optional<MeasuredRate> rate() const override {
@@ -88,7 +93,17 @@ class CsvFeed final : public SampleFeed {
     if (screened.verdict == Verdict::kSaturated)
       screened.sample.saturated =
           static_cast<std::uint8_t>(screened.sample.saturated | screened.channels);
-    if (Sample out; decimator_.take(screened.sample, out)) samples_.push_back(out);
+    if (decimator_.factor() == 1) {
+      samples_.push_back(screened.sample);
+      return;
+    }
+    bridge_.push(screened.sample);
+    thin();
+  }
+  // A hole would spoil all that the low pass makes of it, so it is bridged before.
+  void thin() {
+    for (Sample whole, out; bridge_.pop(whole);)
+      if (decimator_.take(whole, out)) samples_.push_back(out);
   }
   [[nodiscard]] Sample to_sample(const TruckRows::Row& row) {
     const RowClock::Stamp stamp = clock_.next(row[0]);
@@ -98,11 +113,8 @@ class CsvFeed final : public SampleFeed {
       if (input_.range_mps2[c] && std::fabs(row[c + 1]) >= *input_.range_mps2[c])
         sample.saturated = static_cast<std::uint8_t>(sample.saturated | (1U << c));
     }
-    for (std::size_t e = 0; e < kExtras; ++e) {
-      const double accel_mps2 = row[1 + kChannels + e];
-      sample.extra_mps2[e] = static_cast<float>(accel_mps2);
-      if (!std::isfinite(accel_mps2)) sample.accel_mps2[0] = accel_mps2;  // the whole row is none
-    }
+    for (std::size_t e = 0; e < kExtras; ++e)
+      sample.extra_mps2[e] = static_cast<float>(row[1 + kChannels + e]);
     return sample;
   }
 
@@ -111,6 +123,7 @@ class CsvFeed final : public SampleFeed {
   std::vector<TruckRows::Row> batch_;
   std::vector<Sample> samples_;
   RowClock clock_{1.0};
+  HoleBridge bridge_;
   Decimator<kMostFactor> decimator_;
   std::optional<SampleScreen> raw_screen_;
 };

@@ -52,7 +52,7 @@ constexpr std::array kFaults{
            "Connect the line or the message that keeps the nodes in step, or read all three "
            "sensors by one node.",
            "Record all columns by one device."},
-    Advice{"gain_change", "The sensitivity of a wheelset's sensor changed",
+    Advice{"gain_change", "The sensitivity of a sensor changed",
            "Check how the sensor is fastened and whether it gets hot. Turn it over by hand: it "
            "must show 9.81 m/s^2 up and "
            "as much down. If not, exchange it.",
@@ -93,6 +93,12 @@ constexpr std::array kFaults{
            "Knock on each sensor and watch "
            "which signal moves.",
            "One column is there twice."},
+    Advice{
+        "jitter", "Samples are taken at uneven times",
+        "Each sensor samples when its own program gets to it, or stamps say when a frame came, not "
+        "when it was sampled. Let the sensors sample by one clock, or by a timer of their own, "
+        "and number the frames.",
+        "See how the recorder times its samples."},
     Advice{"wrong_value", "Single wrong values in a column", "", kAnyRig},
     Advice{"wrong_time", "Lines whose time is out of order", "",
            "See whether the file was joined from pieces, or the recorder's clock was set while it "

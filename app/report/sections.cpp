@@ -272,6 +272,11 @@ std::string fault_section(const RunResult& result) {
         "<p class=\"note\">Because of these, {} single values were replaced by what their "
         "neighbours say and {} samples left out.</p>\n",
         format_count(faults.values_replaced), format_count(faults.samples_spoilt));
+  if (faults.values_bridged > 0)
+    out += fmt::format(
+        "<p class=\"note\">{} single values were missing and were put in from what the channel did "
+        "around them.</p>\n",
+        format_count(faults.values_bridged));
   if (!truck) return out;
   return out + fmt::format(
                    "<p class=\"note\">Input, no faults: {} impacts (rail joints, wheel flats), {} "

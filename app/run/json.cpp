@@ -176,6 +176,7 @@ void list_members(Archive&& a, Of<DataFaults> auto& f) {
     a.object("repair", [&](auto in) {
       in("values_replaced", f.values_replaced);
       in("samples_left_out", f.samples_spoilt);
+      if (in.has("values_bridged", true)) in("values_bridged", f.values_bridged);
     });
   if (a.has("alarms", true)) a("alarms", f.alarms);
   constexpr AlarmFigures kFigures;

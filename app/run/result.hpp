@@ -148,6 +148,7 @@ struct DataFaults {
   std::uint64_t speed_changes{0};    ///< input, too
   std::uint64_t values_replaced{0};  ///< single wrong samples, by what their neighbours say
   std::uint64_t samples_spoilt{0};   ///< left out because of a fault that passed
+  std::uint64_t values_bridged{0};   ///< that were missing, put in
   bool lasting{false};               ///< nothing was done about one that changes the numbers
   std::optional<DriftFinding> drift;
   std::vector<AlarmFinding> alarms;  ///< the newest
@@ -213,6 +214,7 @@ enum class Trust : std::uint8_t {
 struct Magnitudes {
   double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz
   double weight_n{0.0};       ///< of the moving mass
+  double frame_follow{0.0};   ///< the frame's motion over the wheelsets', at 1.2 Hz; 0: not known
 };
 
 /// What identify says of a record that an explanation added to.

@@ -32,10 +32,33 @@ constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
 constexpr double kViscousSigmas = 5.0;
 constexpr double kLeastFriction = 0.01;    // of the weight
 constexpr double kLeastShakingMps2 = 0.7;  // rms of the wheelsets
+constexpr double kLeastFollow = 0.4;       // of the wheelsets' motion: in g it would be 0.11
+constexpr double kMostFollow = 3.0;
 
 using Reasons = std::vector<std::pair<Trust, std::string>>;
 
 bool is_truck(const RunResult& result) { return result.kind == "truck"; }
+
+// Below the suspension's resonance the frame moves as the wheelsets do, whatever car it is.
+void judge_units(const RunResult& result, const Magnitudes& seen, Reasons& out) {
+  const double follows = seen.frame_follow;
+  if (follows > 0.0 && (follows < kLeastFollow || follows > kMostFollow))
+    out.emplace_back(
+        Trust::kDataFaulty,
+        fmt::format("The frame moves {:.2g} times as much as the wheelsets at 1.2 Hz, where it "
+                    "follows them 1.05 to 1.3 times: are its accelerations in another unit{}?",
+                    follows, follows < kLeastFollow ? ", in g" : ""));
+  const Parameter* const coulomb = find_parameter(result.parameters, "coulomb");
+  if (coulomb == nullptr || !(seen.wheelset_mps2 > 0.0)) return;
+  const double share = coulomb->value / seen.weight_n;
+  if (share < 0.0 || share > kLeastFriction || seen.wheelset_mps2 > kLeastShakingMps2) return;
+  out.emplace_back(
+      Trust::kDataFaulty,
+      fmt::format("The wheelsets shake by {:.2g} m/s^2 rms and friction is {:.2g} % of the weight, "
+                  "a tenth of what trucks have: are the accelerations in g? They are taken as "
+                  "m/s^2; forces of accelerations in g come out 9.8 times too small.",
+                  seen.wheelset_mps2, 100.0 * share));
+}
 
 void judge_data(const Explaining* explaining, const RunResult& result, Reasons& out) {
   const DataFaults& faults = result.faults;
@@ -44,17 +67,7 @@ void judge_data(const Explaining* explaining, const RunResult& result, Reasons& 
     names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", f.name, f.channel);
   if (faults.lasting || (explaining != nullptr && explaining->withheld))
     out.emplace_back(Trust::kDataFaulty, fmt::format("The data have faults: {}.", names));
-  const Parameter* const coulomb = find_parameter(result.parameters, "coulomb");
-  const std::optional<Magnitudes>& seen = result.magnitudes;
-  if (coulomb == nullptr || !seen || !(seen->wheelset_mps2 > 0.0)) return;
-  const double share = coulomb->value / seen->weight_n;
-  if (share < 0.0 || share > kLeastFriction || seen->wheelset_mps2 > kLeastShakingMps2) return;
-  out.emplace_back(
-      Trust::kDataFaulty,
-      fmt::format("The wheelsets shake by {:.2g} m/s^2 rms and friction is {:.2g} % of the weight, "
-                  "a tenth of what trucks have: are the accelerations in g? They are taken as "
-                  "m/s^2; forces of accelerations in g come out 9.8 times too small.",
-                  seen->wheelset_mps2, 100.0 * share));
+  if (result.magnitudes) judge_units(result, *result.magnitudes, out);
 }
 
 struct Positive {

@@ -17,6 +17,7 @@ struct Explaining {
   bool judged{false};      ///< what a complete model would leave is known
   bool incomplete{false};  ///< something real is left
   bool withheld{false};    ///< faults of the data forbid to name an effect
+  bool impossible{false};  ///< friction or spring come out negative: no law of a truck
 };
 
 /// The one rule, for trucks and rigs, files and live runs: sets trust and its reasons, the gravest

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "dampline/sample.hpp"
+
 namespace dampline {
 
 /// What the guards found wrong with the data themselves, so that it is never taken for a property
@@ -22,7 +24,7 @@ enum class FaultKind : std::uint8_t {
   kRepeatedSamples,    ///< all channels once more
   kTimingStep,         ///< a channel is later or earlier from one moment on
   kClockDrift,         ///< a channel has a clock of its own
-  kGainChange,         ///< the sensitivity of a wheelset's sensor, as a step or slowly
+  kGainChange,         ///< the sensitivity of a sensor, as a step or slowly
   kSoftSaturation,     ///< a sensor that reads less the more there is
   kExcessNoise,        ///< more than declared
   kNoiseBurst,         ///< for some blocks only
@@ -31,8 +33,9 @@ enum class FaultKind : std::uint8_t {
   kWrongPolarity,      ///< a sensor upside down
   kWrongSampleRate,    ///< rate, wheelbase or speed are not what was declared
   kIdenticalChannels,  ///< a channel shows what another one does, code for code
+  kJitter,             ///< samples are taken at uneven times
 };
-inline constexpr std::size_t kFaultKinds = 17;
+inline constexpr std::size_t kFaultKinds = 18;
 
 /// Where a fault is. What compares the two wheelsets cannot tell which of them it is.
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
@@ -53,11 +56,12 @@ struct Fault {
 /// The name that reports and files use.
 [[nodiscard]] constexpr const char* name_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kNames{
-      "clipping",          "stuck_channel",    "spikes",         "dc_jump",
-      "lost_samples",      "repeated_samples", "timing_step",    "clock_drift",
-      "gain_change",       "soft_saturation",  "excess_noise",   "noise_burst",
-      "resolution_loss",   "swapped_channels", "wrong_polarity", "wrong_sample_rate",
-      "identical_channels"};
+      "clipping",          "stuck_channel",      "spikes",
+      "dc_jump",           "lost_samples",       "repeated_samples",
+      "timing_step",       "clock_drift",        "gain_change",
+      "soft_saturation",   "excess_noise",       "noise_burst",
+      "resolution_loss",   "swapped_channels",   "wrong_polarity",
+      "wrong_sample_rate", "identical_channels", "jitter"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -65,7 +69,7 @@ struct Fault {
 [[nodiscard]] constexpr const char* unit_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kUnits{
       "m/s^2", "s",     "m/s^2", "m/s^2", "samples", "samples", "s",  "ppm", "%",
-      "%",     "m/s^2", "m/s^2", "m/s^2", "ratio",   "-",       "Hz", "-"};
+      "%",     "m/s^2", "m/s^2", "m/s^2", "ratio",   "-",       "Hz", "-",   "s"};
   return kUnits[static_cast<std::size_t>(kind)];
 }
 
@@ -86,10 +90,29 @@ struct GuardInputs {
   std::uint64_t speed_changes{0};
 };
 
+/// What was put in where single values were missing.
+struct BridgeFigures {
+  std::uint64_t values{0};
+  double share{0.0};                           ///< of the samples: those with such a value
+  std::array<double, kChannels> error_mps2{};  ///< of a value, rms, as the prediction states it
+  std::array<double, kChannels> noise_mps2{};  ///< that they make of all samples, rms
+};
+
 /// What was done about faults that passed. Monotone.
 struct RepairCounts {
   std::uint64_t replaced{0};  ///< values of a channel, by what their neighbours say
   std::uint64_t spoilt{0};    ///< samples that were left out
+  BridgeFigures bridged;
+};
+
+/// How much more the frame moves with the wheelsets below the suspension's resonance than it did
+/// before, relative: there its sensor's gain shows, and its mass hardly does.
+struct FrameFollow {
+  double usual{0.0};  ///< 1.05 to 1.3 in a sound truck; 0: not known yet
+  double step{0.0};
+  double step_significance{0.0};  ///< in deviations
+  double trend{0.0};              ///< over the newest blocks, ten minutes of them at most
+  double trend_significance{0.0};
 };
 
 /// The faults at one moment, times in seconds by the nominal rate. Plain: it can be handed between
@@ -99,6 +122,7 @@ struct FaultView {
   std::size_t count{0};
   GuardInputs inputs;
   RepairCounts repairs;
+  FrameFollow frame_follow;
   [[nodiscard]] std::span<const Fault> list() const noexcept { return {faults.data(), count}; }
 };
 

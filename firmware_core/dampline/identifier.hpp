@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The way of one frame, in the order in which it flows:
 //
-//   push(frame) -> assembler -> guard -> judgement delay -> estimator (screen, motion, rows, sums)
+//   push(frame) -> assembler -> bridge -> guard -> judgement delay -> estimator (screen, motion,
+//   rows, sums)
 //                                                        -> { effects | phase | density | alarms }
 //   snapshot(), faults(), alarms(), statistics(), explanation(): what is known, at any moment
 //
@@ -26,6 +27,7 @@
 #include "dampline/result.hpp"
 #include "dampline/sample.hpp"
 #include "dampline/sample/assembler.hpp"
+#include "dampline/sample/hole_bridge.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {
@@ -34,7 +36,7 @@ namespace dampline {
 /// time; docs/api.md tells what each takes.
 struct Parts {
   bool frames{true};     ///< push(CanFrame): decoding, channels brought together by counter or time
-  bool guards{true};     ///< faults of the data are named; samples wait until they are judged
+  bool guards{true};     ///< faults are named, holes bridged; samples wait until they are judged
   bool densities{true};  ///< of y and v, and the Fokker-Planck criterion
   bool phase{true};      ///< the planes of (y, y', y'')
   bool alarms{true};     ///< a parameter that is not what it was
@@ -60,7 +62,7 @@ inline constexpr Parts kDiagnosisParts{.frames = false,
 /// Sees what goes through a corridor, for tables and plots. Both are called within push().
 template <class T>
 concept StreamObserver = requires(T observer, const Sample& sample, const UpdateResult& result) {
-  observer.taken(sample);           // as it came in
+  observer.taken(sample);           // as it came in, holes bridged
   observer.judged(sample, result);  // when the guards had judged it, and what became of it
 };
 
@@ -94,7 +96,7 @@ class BasicIdentifier {
   explicit BasicIdentifier(const IdentifierConfig& config, const effect::Grids& grids = {}) noexcept
       : config_{config},
         estimator_{config.estimator},
-        assembler_{assembler_config(config)},
+        assembler_{frames_config(config)},
         guard_{guard_config(config)},
         delay_{delay_samples(config)},
         density_{density_config(config.estimator)},
@@ -111,11 +113,11 @@ class BasicIdentifier {
   /// One sample; ticks increase.
   template <StreamObserver Observer = const NoObserver>
   void push(const Sample& sample, Observer& observer = kNobody) {
-    observer.taken(sample);
     if constexpr (kParts.guards) {
-      guard_.update(sample);
-      if (Sample due; delay_.push(sample, guard_, due)) use(due, observer);
+      bridge_.push(sample);
+      judge(observer);
     } else {
+      observer.taken(sample);
       use(sample, observer);
     }
   }
@@ -130,6 +132,8 @@ class BasicIdentifier {
   void finish(Observer& observer = kNobody) {
     if constexpr (kParts.frames) flush(observer);
     if constexpr (kParts.guards) {
+      bridge_.finish();
+      judge(observer);
       guard_.finish();
       for (Sample due; delay_.drain(guard_, due);) use(due, observer);
     }
@@ -150,6 +154,8 @@ class BasicIdentifier {
     for (const Fault& fault : guard_.faults()) out.faults[out.count++] = fault;
     out.inputs = guard_.inputs();
     out.repairs = delay_.counts();
+    out.repairs.bridged = bridge_.figures();
+    out.frame_follow = guard_.frame_follow();
     return out;
   }
   [[nodiscard]] const AlarmView& alarms() const noexcept requires(kParts.alarms) {
@@ -180,9 +186,23 @@ class BasicIdentifier {
   template <bool kPresent, class T>
   using If = std::conditional_t<kPresent, T, None>;
 
+  [[nodiscard]] static AssemblerConfig frames_config(const IdentifierConfig& config) noexcept {
+    AssemblerConfig out = assembler_config(config);
+    if constexpr (kParts.guards) out.most_missing = HoleBridge::kMostMissing;
+    return out;
+  }
   template <class Observer>
   void take_complete(Observer& observer) {
     for (Sample sample; assembler_.pop(sample);) push(sample, observer);
+  }
+  template <class Observer>
+  void judge(Observer& observer) {
+    for (Sample sample; bridge_.pop(sample);) {
+      observer.taken(sample);
+      if (sample.bridged != 0) guard_.set_bridged(bridge_.figures());
+      guard_.update(sample);
+      if (Sample due; delay_.push(sample, guard_, due)) use(due, observer);
+    }
   }
   template <class Observer>
   void use(const Sample& sample, Observer& observer) {
@@ -200,6 +220,7 @@ class BasicIdentifier {
   IdentifierConfig config_;
   EstimatorOfIt estimator_;
   If<kParts.frames, SampleAssembler> assembler_;
+  If<kParts.guards, HoleBridge> bridge_{};
   If<kParts.guards, Guard> guard_;
   If<kParts.guards, JudgementDelay> delay_;
   If<kParts.densities, FokkerPlanck> density_;

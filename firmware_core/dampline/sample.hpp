@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -18,16 +19,28 @@ inline constexpr std::size_t kExtras = 2;
 
 /// The three accelerations of one sampling instant, by which the deflection's second derivative is
 /// y'' = 2 z_b'' - (z_1'' + z_2''). Plain data: what the identifier is fed with where frames are
-/// decoded elsewhere. Instants that lack a channel are not delivered: they appear as a jump of
-/// `tick`. Time is the sensor's own or the frame's, never that of processing.
+/// decoded elsewhere. A channel that has no value is no number (NaN); instants that nobody delivers
+/// appear as a jump of `tick`. Time is the sensor's own or the frame's, never that of processing.
 struct Sample {
   std::int64_t tick{0};     ///< sample number; consecutive samples differ by 1, a gap by more
   std::int64_t time_ns{0};  ///< time of the frame channel's sample
   std::array<double, kChannels> accel_mps2{};  ///< indexed by Channel, up is positive
   std::uint8_t saturated{0};  ///< bit c set: channel c stood at full scale; then the extras
   bool spoilt{false};         ///< not what the car did; nothing is made of it
+  bool lost{false};           ///< a channel or more of this instant never came
+  std::uint8_t bridged{0};    ///< bit c set: channel c had no value and was put in; then the extras
   std::array<float, kExtras> extra_mps2{};  ///< indexed by Extra; 0 where there is none
 };
+
+/// No accelerometer reaches what is no number.
+inline constexpr double kNoNumberMps2 = 1e6;
+[[nodiscard]] inline bool is_number(double accel_mps2) noexcept {
+  return std::abs(accel_mps2) < kNoNumberMps2;  // false for NaN
+}
+
+[[nodiscard]] inline bool is_bridged(const Sample& sample, std::size_t channel) noexcept {
+  return (std::uint32_t{sample.bridged} >> channel & 1U) != 0;
+}
 
 /// a theta'' of a frame with an accelerometer over wheelset 1.
 [[nodiscard]] inline double end_turn_mps2(const Sample& sample) noexcept {

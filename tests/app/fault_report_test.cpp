@@ -78,12 +78,14 @@ TEST(FaultReport, KeepsAlarmsAndWhatWasLeftOutThroughTheFile) {
   result.faults.alarms.push_back({"moving_mass", -30.2, 4210.0, 4450.0});
   result.faults.values_replaced = 7;
   result.faults.samples_spoilt = 900;
+  result.faults.values_bridged = 12;
   const RunResult back = from_json(to_json(result), "memory");
   ASSERT_EQ(back.faults.alarms.size(), 1U);
   EXPECT_EQ(describe_alarm(back.faults.alarms.front()),
             "moving_mass changed by -30.2 % since 4210 s, told at 4450 s");
   EXPECT_EQ(back.faults.values_replaced, 7U);
   EXPECT_EQ(back.faults.samples_spoilt, 900U);
+  EXPECT_EQ(back.faults.values_bridged, 12U);
   EXPECT_THAT(fault_section(back), HasSubstr("moving_mass changed"));
   EXPECT_THAT(fault_section(back), HasSubstr("900 samples left out"));
   EXPECT_THAT(fault_section(back), Not(HasSubstr("Live alarm")));

@@ -67,13 +67,13 @@ TEST(Judgement, TakesNoFaultThatPassedForAnImpulsiveInput) {
   constexpr auto kImpulsive = static_cast<std::size_t>(Effect::kImpulsiveInput);
   for (const FaultKind kind : kPassing) {
     ExplainerConfig config;
-    disallow_mimics(with(kind, FaultChannel::kFrame).list(), config);
+    disallow_mimics(with(kind, FaultChannel::kFrame), config);
     EXPECT_FALSE(config.allowed[kImpulsive]) << name_of(kind);
     config.allowed[kImpulsive] = true;
     EXPECT_EQ(config.allowed, ExplainerConfig::all()) << name_of(kind);
   }
   ExplainerConfig config;
-  disallow_mimics(with(FaultKind::kLostSamples, FaultChannel::kAll).list(), config);
+  disallow_mimics(with(FaultKind::kLostSamples, FaultChannel::kAll), config);
   EXPECT_EQ(config.allowed, ExplainerConfig::all());
 }
 

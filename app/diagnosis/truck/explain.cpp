@@ -69,6 +69,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
     if (needless == effect::Effect::kUnknown) break;
     out.needless[static_cast<std::size_t>(needless)] = true;
   }
+  effect::name_nothing_impossible(out.explanation);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
     out.validation.push_back(

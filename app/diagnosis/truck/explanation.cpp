@@ -120,7 +120,7 @@ Explanation found_in(const Explained& explained) {
   Explanation out;
   const effect::Conclusion conclusion = conclusion_of(explained);
   out.verdict = effect::name_of(conclusion);
-  out.known = {e.floor_nmse > 0.0, is_unknown(conclusion), explained.withheld};
+  out.known = {e.floor_nmse > 0.0, is_unknown(conclusion), explained.withheld, !is_possible(e)};
   out.unknown = !explained.withheld && !explained.drifts && is_unknown(e.conclusion);
   out.base = base_of(explained);
   for (std::size_t i = 0; i < e.step_count; ++i) out.steps.push_back(step_of(e, i));

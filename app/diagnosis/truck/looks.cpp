@@ -132,7 +132,7 @@ class CloserLook {
              const FrameNoise& noise, effect::Explainer& explainer)
       : config_{config}, options_{options}, core_{estimator_config(config)}, explainer_{explainer} {
     core_.screen = first.run->config().estimator.screen;
-    noise_mps2_ = noise_of_record(first, noise, core_.screen.step_mps2);
+    noise_ = noise_of_record(first, noise, core_.screen.step_mps2);
   }
 
   /// Explains with these grids and a channel set right; `left`: how late it still is.
@@ -140,7 +140,7 @@ class CloserLook {
                               const LateChannel& lateness, Estimate& left) {
     TruckPassOptions reading{grids, lateness, options_.show_progress, {}};
     const effect::SurrogateConfig law =
-        with_memory(surrogate_config(core_, known.explanation, noise_mps2_), known.explanation);
+        with_memory(surrogate_config(core_, known.explanation, noise_), known.explanation);
     const bool late = late_step(known.explanation) != nullptr;
     std::unique_ptr<SurrogatePass> surrogate;
     if (late && is_physical(law)) surrogate = std::make_unique<SurrogatePass>(core_, law, grids);
@@ -171,7 +171,7 @@ class CloserLook {
   const ExplainOptions& options_;
   EstimatorConfig core_;
   effect::Explainer& explainer_;
-  std::array<double, kChannels> noise_mps2_{};
+  RecordNoise noise_;
 };
 
 /// A column for a lateness of less than some 1.1 ms takes more of the error than a channel that is

@@ -86,18 +86,25 @@ std::array<double, kChannels> noise_of(std::array<double, kChannels> seen_mps2,
 
 }  // namespace
 
-std::array<double, kChannels> noise_of_record(const TruckPass& first, const FrameNoise& frame,
-                                              const std::array<double, kChannels>& step_mps2) {
+RecordNoise noise_of_record(const TruckPass& first, const FrameNoise& frame,
+                            const std::array<double, kChannels>& step_mps2) {
+  const BridgeFigures bridged = first.run->core().faults().repairs.bridged;
+  const auto of_sensor = [&](double seen_mps2, std::size_t c) {
+    const double added = bridged.noise_mps2[c];
+    return added > 0.0 ? std::sqrt(std::max(seen_mps2 * seen_mps2 - added * added, 0.0))
+                       : seen_mps2;
+  };
   std::array<double, kChannels> seen{};
-  for (std::size_t c = 0; c < kChannels; ++c) seen[c] = first.run->core().guard().noise_mps2(c);
-  const double whole = frame.noise_mps2();
+  for (std::size_t c = 0; c < kChannels; ++c)
+    seen[c] = of_sensor(first.run->core().guard().noise_mps2(c), c);
+  const double whole = of_sensor(frame.noise_mps2(), 0);
   if (seen[0] > 0.0 && whole > 0.0)
     seen[0] = std::clamp(whole, seen[0] / kNoiseDoubt, kNoiseDoubt * seen[0]);
-  return noise_of(seen, step_mps2);
+  return {noise_of(seen, step_mps2), bridged.error_mps2};
 }
 
 effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effect::Explanation& e,
-                                         const std::array<double, kChannels>& noise_mps2) {
+                                         const RecordNoise& noise) {
   effect::SurrogateConfig out;
   out.sample_rate_hz = core.sample_rate_hz;
   out.stiffness_per_s2 = e.final.theta[effect::ModelFit::kStiffness];
@@ -106,7 +113,8 @@ effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effe
   if (e.base_count > 0)
     out.viscous_per_s = std::max(e.final.theta[effect::ModelFit::kFirstEffect], 0.0);
   out.anti_alias_hz = core.anti_alias.corner_hz;
-  out.noise_mps2 = noise_mps2;
+  out.noise_mps2 = noise.sensors_mps2;
+  out.bridged_mps2 = noise.bridged_mps2;
   out.step_mps2 = core.screen.step_mps2;
   return out;
 }

@@ -40,16 +40,19 @@ struct TruckPassOptions {
 [[nodiscard]] TruckPass pass_of(const Config& config, const SourceOptions& source,
                                 const TruckPassOptions& options);
 
-/// White noise of each channel, rms, what its resolution makes included, as a record shows it.
-[[nodiscard]] std::array<double, kChannels> noise_of_record(
-    const TruckPass& first, const FrameNoise& frame,
-    const std::array<double, kChannels>& step_mps2);
+/// As a record shows it, rms, by channel.
+struct RecordNoise {
+  std::array<double, kChannels> sensors_mps2{};  ///< white; what the resolution makes included
+  std::array<double, kChannels> bridged_mps2{};  ///< errors of values that were put in
+};
+[[nodiscard]] RecordNoise noise_of_record(const TruckPass& first, const FrameNoise& frame,
+                                          const std::array<double, kChannels>& step_mps2);
 
 /// The declared law beside the effects that were found, per unit of mass. With a mass on the frame
 /// every coefficient of the fit is of all mass, and friction and spring are of the frame's own.
-[[nodiscard]] effect::SurrogateConfig surrogate_config(
-    const EstimatorConfig& core, const effect::Explanation& e,
-    const std::array<double, kChannels>& noise_mps2);
+[[nodiscard]] effect::SurrogateConfig surrogate_config(const EstimatorConfig& core,
+                                                       const effect::Explanation& e,
+                                                       const RecordNoise& noise);
 
 /// The same with friction's memory, where some was found: it has no leap that an error of the
 /// velocity could misplace, so less is left of it.

@@ -45,7 +45,7 @@ effect::ExplainerConfig explainer_config(const Config& config) {
 
 effect::ExplainerConfig explainer_config(const Config& config, const Explained& known) {
   effect::ExplainerConfig out = explainer_config(config);
-  disallow_mimics(known.circumstances.faults.list(), out);
+  disallow_mimics(known.circumstances.faults, out);
   for (std::size_t i = 0; i < effect::kEffects; ++i)
     out.allowed[i] = out.allowed[i] && !known.needless[i];
   return out;

@@ -7,6 +7,7 @@ namespace dampline::effect {
 namespace {
 
 constexpr double kMoreGain = 0.02;
+constexpr double kManyBridged = 0.01;  // of the samples: errors of single values look like strikes
 
 bool passes(FaultKind kind) noexcept {
   return kind == FaultKind::kSpikes || kind == FaultKind::kDcJump || kind == FaultKind::kNoiseBurst;
@@ -26,6 +27,10 @@ void withhold_effects(Explanation& explanation) noexcept {
   explanation.conclusion = Conclusion::kUnexplained;
 }
 
+void name_nothing_impossible(Explanation& explanation) noexcept {
+  if (!is_possible(explanation)) withhold_effects(explanation);
+}
+
 bool forbids_naming(const FaultView& faults) noexcept {
   const bool repaired = faults.repairs.replaced + faults.repairs.spoilt > 0;
   const auto list = faults.list();
@@ -34,9 +39,11 @@ bool forbids_naming(const FaultView& faults) noexcept {
   });
 }
 
-void disallow_mimics(std::span<const Fault> faults, ExplainerConfig& config) noexcept {
-  const auto passed = [](const Fault& fault) { return passes(fault.kind); };
-  if (std::any_of(faults.begin(), faults.end(), passed))
+void disallow_mimics(const FaultView& faults, ExplainerConfig& config) noexcept {
+  const auto list = faults.list();
+  const bool passed =
+      std::any_of(list.begin(), list.end(), [](const Fault& fault) { return passes(fault.kind); });
+  if (passed || faults.repairs.bridged.share > kManyBridged)
     config.allowed[static_cast<std::size_t>(Effect::kImpulsiveInput)] = false;
 }
 
@@ -48,10 +55,11 @@ bool drift_explains_more(const ParameterDrift& drift, const Explanation& explana
 void judge(const GramStore& store, const ImpulseMeter& impulses, const Grids& grids,
            ExplainerConfig config, const Circumstances& circumstances, Explainer& explainer,
            Judgement& out) noexcept {
-  disallow_mimics(circumstances.faults.list(), config);
+  disallow_mimics(circumstances.faults, config);
   out.explanation = explainer.explain(store, impulses, grids, config);
   if (out.explanation.conclusion == Conclusion::kNotReady) return;
   out.withheld = forbids_naming(circumstances.faults);
+  name_nothing_impossible(out.explanation);
   out.drifts = !out.withheld && drift_explains_more(circumstances.drift, out.explanation);
   if (out.withheld || out.drifts) withhold_effects(out.explanation);
 }

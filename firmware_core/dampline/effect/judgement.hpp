@@ -28,7 +28,7 @@ struct Judgement {
 
 /// Takes from the candidates what the faults can look like although most of them was left out:
 /// impulses that nobody measured.
-void disallow_mimics(std::span<const Fault> faults, ExplainerConfig& config) noexcept;
+void disallow_mimics(const FaultView& faults, ExplainerConfig& config) noexcept;
 
 /// Whether a parameter that changed explains more than the first effect does, by 2 % of the
 /// held-out error.
@@ -37,6 +37,9 @@ void disallow_mimics(std::span<const Fault> faults, ExplainerConfig& config) noe
 
 /// Takes back the effects that were added: what is left is unexplained.
 void withhold_effects(Explanation& explanation) noexcept;
+
+/// Where friction or spring come out negative with the effects, these are no finding.
+void name_nothing_impossible(Explanation& explanation) noexcept;
 
 /// Judges a record's sums: of a file, and of a live run at any moment. Where the circumstances
 /// forbid it no effect is named, and what is left is unexplained. Mimics leave the candidates.

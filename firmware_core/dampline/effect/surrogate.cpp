@@ -135,7 +135,8 @@ std::array<double, 2> Surrogate::between(int part) const noexcept {
 Sample Surrogate::seen(const std::array<double, kChannels>& accel_mps2) {
   Sample out = held_[kHalf];
   for (std::size_t c = 0; c < kChannels; ++c) {
-    const double noisy = accel_mps2[c] + white_mps2_[c] * noise_.normal();
+    double noisy = accel_mps2[c] + white_mps2_[c] * noise_.normal();
+    if (is_bridged(out, c)) noisy += config_.bridged_mps2[c] * noise_.normal();
     const double step = config_.step_mps2[c];
     out.accel_mps2[c] = step > 0.0 ? step * std::round(noisy / step) : noisy;
   }

@@ -25,10 +25,11 @@ struct SurrogateConfig {
   double stiffness_per_s2{0.0};  ///< k / M
   double viscous_per_s{0.0};     ///< c / M
   FrictionMemory memory{};
-  double anti_alias_hz{0.0};                   ///< 0: none
-  std::array<double, kChannels> noise_mps2{};  ///< rms, what the resolution makes included
-  std::array<double, kChannels> step_mps2{};   ///< resolution; 0: unknown
-  std::uint64_t seed{1987};                    ///< of the noise
+  double anti_alias_hz{0.0};                     ///< 0: none
+  std::array<double, kChannels> noise_mps2{};    ///< rms, what the resolution makes included
+  std::array<double, kChannels> step_mps2{};     ///< resolution; 0: unknown
+  std::array<double, kChannels> bridged_mps2{};  ///< error of values that were put in, rms
+  std::uint64_t seed{1987};                      ///< of the noise
 };
 
 /// The record that a law alone would have made: M z_b'' + k y + c v + F sign v = 0, and friction

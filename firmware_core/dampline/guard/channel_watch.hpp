@@ -105,6 +105,9 @@ class RepeatWatch {
   bool update(const Codes& codes) noexcept {
     const bool same = seen_ >= 1 && codes == last_[0];
     const bool chance = seen_ >= 2 && codes == last_[1];
+    if (seen_ >= 1) samples_ += 1.0;
+    for (std::size_t c = 0; seen_ >= 1 && c < kChannels; ++c)
+      if (codes[c] == last_[0][c]) alike_[c] += 1.0;
     if (same) repeated_ += 1.0;
     if (chance) chance_ += 1.0;
     last_[1] = last_[0];
@@ -114,25 +117,37 @@ class RepeatWatch {
   }
   /// More than chance explains, with kAllowed on top.
   [[nodiscard]] bool found() const noexcept {
-    return repeated_ >= kAllowed + 4.0 * std::sqrt(chance_ + 1.0) + kChance * chance_;
+    return repeated_ >= kAllowed + 4.0 * std::sqrt(chance_ + 1.0) + kChance * chance_ +
+                            2.0 * std::max(by_chance() - kFewByChance, 0.0);
   }
   [[nodiscard]] double excess() const noexcept { return repeated_ - chance_; }
   /// Once a block: what is long ago counts less, with a time constant of some 40 blocks.
   void forget() noexcept {
     repeated_ *= kKept;
     chance_ *= kKept;
+    samples_ *= kKept;
+    for (double& alike : alike_) alike *= kKept;
   }
   void clear() noexcept { repeated_ = chance_ = 0.0; }
   void restart() noexcept { seen_ = 0; }
 
  private:
+  /// Repetitions of all channels if each repeated its code by itself: slow motion, coarse steps.
+  [[nodiscard]] double by_chance() const noexcept {
+    double count = samples_;
+    for (const double alike : alike_) count *= alike / std::max(samples_, 1.0);
+    return count;
+  }
   static constexpr double kAllowed = 5.0;
+  static constexpr double kFewByChance = 2.0;  // 1.2 in the reference runs
   static constexpr double kChance = 5.0;  // of smooth motion the nearer sample is the more alike
   static constexpr double kKept = 0.975;
   std::array<Codes, 2> last_{};
   int seen_{0};
   double repeated_{0.0};
   double chance_{0.0};
+  double samples_{0.0};
+  std::array<double, kChannels> alike_{};
 };
 
 /// A jump of a channel's zero.

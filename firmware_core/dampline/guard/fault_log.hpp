@@ -45,7 +45,7 @@ class FaultLog {
     std::array<std::uint16_t, kFaultChannels> kinds{};  // bit k: fault kind k
     bool gap{false};
   };
-  /// Of those that spoil seconds: identical channels spoil the whole record.
+  /// Of those that spoil seconds: identical channels and jitter spoil the whole record.
   static_assert(static_cast<std::size_t>(FaultKind::kIdenticalChannels) == 16);
   /// Calls for each second from the first tick's to the last one's.
   template <typename Change>

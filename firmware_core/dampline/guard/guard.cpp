@@ -11,7 +11,6 @@
 namespace dampline {
 namespace {
 
-constexpr double kNoNumberMps2 = 1e6;
 constexpr std::uint64_t kFewSaturated = 3;
 // A channel that is stuck or clips has no level of its own.
 constexpr std::uint32_t kNoLevel = 1U << static_cast<unsigned>(FaultKind::kStuckChannel) |
@@ -20,6 +19,9 @@ constexpr double kMostRateHz = 2000.0;
 
 bool positive_or_unknown(double x) noexcept { return x >= 0.0 && std::isfinite(x); }
 
+constexpr double kJumpsTogetherS = 3.0;
+constexpr double kJumpsAlike = 0.25;  // of the largest
+constexpr double kJumpsAlikeMps2 = 0.1;
 constexpr double kFewSpikes = 3.0;
 constexpr double kShareOfImpacts = 2.0;
 constexpr double kTallyKept = 0.98;  // a block
@@ -62,11 +64,11 @@ void Guard::update(const Sample& sample) noexcept {
   if (any_ && sample.tick <= last_.tick) return;
   Codes codes{};
   for (std::size_t c = 0; c < kChannels; ++c) {
-    if (!(std::abs(sample.accel_mps2[c]) < kNoNumberMps2)) {  // NaN too: the screen's, not ours
+    if (!is_number(sample.accel_mps2[c])) {  // the screen's, not ours
       ++no_numbers_;
       return;
     }
-    if (!knows_steps_) steps_[c].update(sample.accel_mps2[c]);
+    if (!knows_steps_ && !is_bridged(sample, c)) steps_[c].update(sample.accel_mps2[c]);
     codes[c] = std::llround(sample.accel_mps2[c] / unit(c));
   }
   if (!any_) {
@@ -75,6 +77,9 @@ void Guard::update(const Sample& sample) noexcept {
   } else if (sample.tick != last_.tick + 1) {
     take_gap(sample);
   }
+  if (sample.lost)
+    log_.report(FaultKind::kLostSamples, FaultChannel::kAll, log_.seconds(sample.tick), 1.0);
+  if (sample.bridged != 0) wheelsets_.strike(sample.tick);
   watch_codes(sample, codes);
   spectral_.push(sample.tick, sample.accel_mps2, false);
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -148,18 +153,49 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
     }
   }
   for (std::size_t c = 0; c < kChannels; ++c) {
-    codes_[c].update(sample.tick, codes[c]);
+    if (!is_bridged(sample, c)) codes_[c].update(sample.tick, codes[c]);
     spikes_[c].update(sample.tick, codes[c]);
     impulses_[c].update(sample.accel_mps2[c]);
-    LevelJump jump;
-    if (!levels_[c].update(sample.tick, sample.accel_mps2[c], jump)) continue;
-    if ((log_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) != 0) {
-      continue;
-    }
-    log_.report(FaultKind::kDcJump, channel_of(c), log_.seconds(jump.tick), jump.size_mps2);
-    log_.spoil(FaultKind::kDcJump, channel_of(c), jump.tick - block_ticks_ / 10,
-               jump.tick + block_ticks_ / 10);
+    if (LevelJump jump; levels_[c].update(sample.tick, sample.accel_mps2[c], jump))
+      take_jump(c, jump, sample.tick);
   }
+  if (jumps_wait_) settle_jumps(sample.tick);
+}
+
+void Guard::take_jump(std::size_t channel, const LevelJump& jump, std::int64_t tick) noexcept {
+  if ((log_.spoilt(jump.tick - block_ticks_ / 2, jump.tick + block_ticks_ / 2) & kNoLevel) != 0)
+    return;
+  if (jumps_[channel].waits) report_jump(channel);
+  jumps_[channel] = {jump, tick, true};
+  jumps_wait_ = true;
+}
+
+// The cant of a curve moves the zero of all channels alike: it belongs to the ride.
+void Guard::settle_jumps(std::int64_t tick) noexcept {
+  const bool due = std::any_of(jumps_.begin(), jumps_.end(), [&](const HeldJump& held) {
+    return held.waits && tick - held.found_tick >= ticks_of(kJumpsTogetherS);
+  });
+  if (!due) return;
+  const auto size = [](const HeldJump& held) { return held.jump.size_mps2; };
+  const auto [least, most] =
+      std::minmax_element(jumps_.begin(), jumps_.end(),
+                          [&](const HeldJump& a, const HeldJump& b) { return size(a) < size(b); });
+  const bool all = std::all_of(jumps_.begin(), jumps_.end(), [](auto& held) { return held.waits; });
+  const double largest = std::max(std::abs(size(*least)), std::abs(size(*most)));
+  const bool alike =
+      all && size(*most) - size(*least) < std::max(kJumpsAlike * largest, kJumpsAlikeMps2);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (jumps_[c].waits && !alike) report_jump(c);
+    jumps_[c].waits = false;
+  }
+  jumps_wait_ = false;
+}
+
+void Guard::report_jump(std::size_t channel) noexcept {
+  const LevelJump& jump = jumps_[channel].jump;
+  log_.report(FaultKind::kDcJump, channel_of(channel), log_.seconds(jump.tick), jump.size_mps2);
+  log_.spoil(FaultKind::kDcJump, channel_of(channel), jump.tick - block_ticks_ / 10,
+             jump.tick + block_ticks_ / 10);
 }
 
 void Guard::watch_full_scale(const Sample& sample) noexcept {
@@ -177,6 +213,7 @@ void Guard::watch_full_scale(const Sample& sample) noexcept {
 
 void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
+    if (is_bridged(sample, c)) continue;
     Run& run = runs_[c];
     const std::int64_t other = codes[(c + 1) % kChannels];
     const std::int64_t another = codes[(c + 2) % kChannels];
@@ -325,6 +362,7 @@ void Guard::judge_time(const Sample& sample) noexcept {
 }
 
 void Guard::finish() noexcept {
+  settle_jumps(std::numeric_limits<std::int64_t>::max() / 2);
   if (any_ && last_.tick > block_start_) close_block(last_.tick);
 }
 

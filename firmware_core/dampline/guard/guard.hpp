@@ -40,6 +40,8 @@ class Guard {
 
   /// Ticks must increase; a sample that does not is ignored.
   void update(const Sample& sample) noexcept;
+  /// What was put in so far where values were missing: no noise of a sensor.
+  void set_bridged(const BridgeFigures& figures) noexcept { spectral_.set_bridged(figures); }
   /// End of the record: judges what is left of the open block.
   void finish() noexcept;
 
@@ -62,6 +64,7 @@ class Guard {
   [[nodiscard]] const GuardInputs& inputs() const noexcept { return inputs_; }
   /// Of the newest block of spectra that was judged.
   [[nodiscard]] const BlockFigures& block() const noexcept { return spectral_.figures(); }
+  [[nodiscard]] FrameFollow frame_follow() const noexcept { return spectral_.frame_follow(); }
   /// White noise of a channel, rms, what its resolution makes included; 0: not known yet.
   [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept {
     return spectral_.noise_mps2(channel);
@@ -84,6 +87,12 @@ class Guard {
     double impacts{0.0};
   };
   using Codes = std::array<std::int64_t, kChannels>;
+  /// A jump of a channel's zero, until it is known whether the others have it too.
+  struct HeldJump {
+    LevelJump jump{};
+    std::int64_t found_tick{0};
+    bool waits{false};
+  };
 
   /// Samples of a block in which a pair of channels moved, and of these: both alike.
   struct Twins {
@@ -95,6 +104,9 @@ class Guard {
   void restart() noexcept;
   void watch_codes(const Sample& sample, const Codes& codes) noexcept;
   void watch_runs(const Sample& sample, const Codes& codes) noexcept;
+  void take_jump(std::size_t channel, const LevelJump& jump, std::int64_t tick) noexcept;
+  void settle_jumps(std::int64_t tick) noexcept;
+  void report_jump(std::size_t channel) noexcept;
   void watch_full_scale(const Sample& sample) noexcept;
   void watch_twins(const Codes& codes) noexcept;
   void judge_twins() noexcept;
@@ -122,6 +134,8 @@ class Guard {
   std::array<CodeWatch, kChannels> codes_{};
   std::array<SpikeWatch, kChannels> spikes_;
   std::array<LevelWatch, kChannels> levels_;
+  std::array<HeldJump, kChannels> jumps_{};
+  bool jumps_wait_{false};
   std::array<ImpulsePower, kChannels> impulses_{};
   RepeatWatch repeats_;
   SpectralGuard spectral_;

@@ -23,6 +23,9 @@ constexpr double kLeastT = 4.0;
 constexpr double kLeastGain = 0.0015;
 constexpr double kLeastChange = 0.03;
 constexpr double kStepSignificant = 6.0;
+// A mass moves the frame by a quarter as much at 1.2 Hz, and the other way round.
+constexpr double kGainNotMass = 0.4;
+constexpr double kFollowSignificant = 2.0;  // deviations: no load changes on the way
 // Of the live alarm.
 constexpr double kMostOfThreshold = 1.0 / 3.0;  // that one group adds: no alarm from one or two
 constexpr double kLeastShare = 0.5;             // of the other's change: both are the mass
@@ -195,6 +198,48 @@ ParameterDrift find_parameter_drift(const Statistics& statistics, double block_s
   for (std::size_t i = 0; i < count; ++i) list[i] = &statistics.entries[i];
   return find_parameter_drift(statistics.total, EntryList{list.data(), count},
                               block_s * statistics.header.blocks_per_entry);
+}
+
+namespace {
+
+bool moves_parameters(const Fault& fault) noexcept {
+  switch (fault.kind) {
+    case FaultKind::kLostSamples:
+    case FaultKind::kRepeatedSamples:
+      return fault.channel != FaultChannel::kAll;
+    case FaultKind::kTimingStep:
+    case FaultKind::kClockDrift:
+    case FaultKind::kGainChange:
+    case FaultKind::kSwappedChannels:
+    case FaultKind::kWrongPolarity:
+    case FaultKind::kIdenticalChannels:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+void hold_against_faults(FaultView& faults, ParameterDrift& drift) noexcept {
+  if (!drift.found) return;
+  const FrameFollow& follow = faults.frame_follow;
+  const double more = drift.step ? follow.step : follow.trend;
+  const double sure = drift.step ? follow.step_significance : follow.trend_significance;
+  const double gain = -drift.change.value;
+  const bool is_gain = drift.parameter == DriftingParameter::kMass &&
+                       more * gain > kGainNotMass * gain * gain &&
+                       std::abs(sure) > kFollowSignificant;
+  if (is_gain && faults.count < faults.faults.size())
+    faults.faults[faults.count++] = {.kind = FaultKind::kGainChange,
+                                     .channel = FaultChannel::kFrame,
+                                     .time_s = drift.time_s,
+                                     .size = 100.0 * gain,
+                                     .unit = unit_of(FaultKind::kGainChange),
+                                     .count = 1,
+                                     .last_s = drift.time_s};
+  const auto list = faults.list();
+  if (std::any_of(list.begin(), list.end(), moves_parameters)) drift.found = false;
 }
 
 bool GroupMeter::update(const ScaleFactors& total, Group& out) noexcept {

@@ -39,6 +39,11 @@ struct ParameterDrift {
 [[nodiscard]] ParameterDrift find_parameter_drift(const Statistics& statistics,
                                                   double block_s) noexcept;
 
+/// What a fault does to the parameters is no change of theirs: where samples of a channel moved in
+/// time, or a gain changed, none is found. A mass that seems to change while the frame moves as
+/// much more with the wheelsets is a gain of the frame's sensor: it joins the faults.
+void hold_against_faults(FaultView& faults, ParameterDrift& drift) noexcept;
+
 /// Level of friction and stiffness of the newest blocks alone, from how the sums over all blocks
 /// have grown: the normal equations of a group are those of now less those of before. The law's
 /// width and the weights of the scales are those of the first blocks and stay. For an infinite

@@ -31,6 +31,8 @@ constexpr double kWhite = 1.4;
 constexpr double kLevelDoubt = 0.3;
 constexpr double kBurstDoubt = 1.2;
 constexpr double kImpulseShare = 1.5;  // impulses fall off towards half the rate, noise does not
+constexpr double kBridgeDoubt = 1.5;   // of the noise that bridged holes make
+constexpr double kManyBridged = 0.01;  // of the samples
 constexpr double kLasting = 1.4;       // noise over the usual difference of the wheelsets
 constexpr std::size_t kBurstBlocks = 5;
 constexpr std::uint64_t kFewImpacts = 3;  // a block
@@ -96,6 +98,7 @@ void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
       next_ = Test::kGain;
       return;
     case Test::kGain:
+      following_.add(survey_.figures().following, survey_.figures().last_tick);
       if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(log);
       next_ = Test::kRate;
       return;
@@ -208,6 +211,14 @@ void SpectralGuard::judge_rate(FaultLog& log) noexcept {
              log.seconds(survey_.figures().first_tick), config_.sample_rate_hz * ratio);
 }
 
+FrameFollow SpectralGuard::frame_follow() const noexcept {
+  const double usual = following_.median();
+  if (!(usual > 0.0)) return {.usual = usual};
+  const BlockSeries::Step step = following_.step();
+  const BlockSeries::Trend trend = following_.trend();
+  return {usual, step.size / usual, step.significance, trend.total / usual, trend.significance};
+}
+
 double SpectralGuard::noise_mps2(std::size_t channel) const noexcept {
   const bool both = channel > 0 && noise_[1].size() > 0;
   const BlockSeries& series = noise_[both ? 1 : 0];
@@ -236,7 +247,10 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (!few_impacts_[c] || (c > 0 && !steady_)) continue;
     const double impulses = kImpulseShare * impulse_power_[c] / (0.5 * config_.sample_rate_hz);
-    const double not_noise = c > 0 ? kLevelDoubt * block.incoherent + impulses : 0.0;
+    const double bridged =
+        bridged_.noise_mps2[c] * bridged_.noise_mps2[c] / (0.5 * config_.sample_rate_hz);
+    const double not_noise =
+        kBridgeDoubt * bridged + (c > 0 ? kLevelDoubt * block.incoherent + impulses : 0.0);
     level_[c].add(std::max(block.noise[c] - not_noise, 0.0), middle);
     if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
     const BlockSeries newest = level_[c].newest(kNoiseBlocks[c] + 1);
@@ -251,9 +265,17 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
       log.report(FaultKind::kExcessNoise, channel_of(c), log.seconds(newest.tick(0)), noise_mps2);
     }
   }
-  noise_[0].add(block.noise[0], middle);
+  add_noise(0, block.noise[0], middle);
   const double both = block.noise[1] + block.noise[2] - kBurstDoubt * block.incoherent;
-  if (few_impacts_[1] && few_impacts_[2] && steady_) noise_[1].add(std::max(both, 0.0), middle);
+  if (few_impacts_[1] && few_impacts_[2] && steady_) add_noise(1, std::max(both, 0.0), middle);
+}
+
+// Values that were put in are off by more now and then: they make no burst.
+void SpectralGuard::add_noise(std::size_t which, double power, std::int64_t tick) noexcept {
+  BlockSeries& series = noise_[which];
+  if (bridged_.share > kManyBridged && series.size() > 0)
+    power = std::min(power, kBurstRatio[which] * series.median());
+  series.add(power, tick);
 }
 
 void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {

@@ -25,6 +25,7 @@ class SpectralGuard {
   /// A slice of the work that is due; faults go to the log. `inputs.impacts` tells impacts so far.
   void advance(FaultLog& log, GuardInputs& inputs) noexcept;
   /// Robust deviation of the second difference of a channel: white noise shows there, too.
+  void set_bridged(const BridgeFigures& figures) noexcept { bridged_ = figures; }
   void set_change_scale(std::size_t channel, double mps2) noexcept { change_mps2_[channel] = mps2; }
   /// What of a channel's fast motion comes in impulses, as white noise of that power.
   void set_impulse_power(std::size_t channel, double power) noexcept {
@@ -50,6 +51,8 @@ class SpectralGuard {
   /// blocks. Of the wheelsets the mean of both, or the frame's where they are not side by side.
   [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept;
 
+  [[nodiscard]] FrameFollow frame_follow() const noexcept;
+
  private:
   enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kRate, kNoise, kBurst };
 
@@ -62,6 +65,7 @@ class SpectralGuard {
   [[nodiscard]] bool is_noisy(const BlockFigures& block) const noexcept;
   void judge_noise(FaultLog& log) noexcept;
   void count_impacts(const GuardInputs& inputs) noexcept;
+  void add_noise(std::size_t which, double power, std::int64_t tick) noexcept;
   void judge_burst(FaultLog& log, std::size_t which) noexcept;
   [[nodiscard]] double noise_limit(std::size_t channel) const noexcept;  // density
 
@@ -70,6 +74,7 @@ class SpectralGuard {
   BlockSurvey survey_;
   TimingWatch timing_;
   BlockSeries gain_;
+  BlockSeries following_;
   std::array<BlockSeries, 2> noise_{};  // of the frame; of both wheelsets together
   std::array<std::int64_t, 2> burst_tick_{-1, -1};
   std::array<BlockSeries, kChannels> level_{};
@@ -88,6 +93,7 @@ class SpectralGuard {
   int wrong_rate_blocks_{0};
   std::array<std::uint64_t, kChannels> impacts_before_{};
   std::array<bool, kChannels> few_impacts_{};  // in this block
+  BridgeFigures bridged_{};
 };
 
 }  // namespace dampline

@@ -6,6 +6,7 @@
 
 #include "dampline/guard/block_series.hpp"
 #include "dampline/guard/fault_log.hpp"
+#include "dampline/guard/jitter_watch.hpp"
 #include "dampline/numeric/log_histogram.hpp"
 
 namespace dampline {
@@ -111,6 +112,7 @@ class WheelsetWatch {
   };
   using Slip = SlipFinder::Slip;
   void compare(std::int64_t tick) noexcept;
+  void watch_jitter(std::int64_t n) noexcept;
   void end_chunk() noexcept;
   void follow_slip() noexcept;
   void find_slip() noexcept;
@@ -156,6 +158,7 @@ class WheelsetWatch {
   std::array<Direction, 2> chunk_{};
   std::array<Direction, 2> block_{};
   std::array<BlockSeries, 2> cubic_{};
+  JitterWatch jitter_;
 };
 
 }  // namespace dampline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace dampline {
@@ -19,7 +20,8 @@ Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) no
 }
 
 SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
-    : lanes_{ChannelLane{config.channels[0], config.sample_rate_hz},
+    : most_missing_{config.most_missing},
+      lanes_{ChannelLane{config.channels[0], config.sample_rate_hz},
              ChannelLane{config.channels[1], config.sample_rate_hz},
              ChannelLane{config.channels[2], config.sample_rate_hz},
              ChannelLane{{}, config.sample_rate_hz}, ChannelLane{{}, config.sample_rate_hz}},
@@ -58,6 +60,7 @@ void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
   Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
   sample.tick = next_tick_;
   sample.time_ns = readings[0]->time_ns;
+  sample.lost = false;
   unsigned saturated = 0;
   for (std::size_t c = 0; c < kChannels; ++c) {
     sample.accel_mps2[c] = readings[c]->accel_mps2;
@@ -70,6 +73,44 @@ void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
   sample.saturated = static_cast<std::uint8_t>(saturated);
   ++counts_.samples;
   meter_.update(sample.tick, sample.time_ns);
+}
+
+bool SampleAssembler::is_short_hole(std::size_t channel, std::int64_t tick) const noexcept {
+  std::int64_t length = 1;
+  for (const std::int64_t step : {-1, 1})
+    for (std::int64_t t = tick + step; length <= most_missing_ && find(channel, t) == nullptr;
+         t += step)
+      ++length;
+  return length <= most_missing_;
+}
+
+void SampleAssembler::emit_incomplete(const Readings& readings, std::size_t channels) noexcept {
+  for (std::size_t c = 0; c < count_; ++c)
+    if (readings[c] == nullptr && !is_short_hole(c, next_tick_)) return;
+  if (ready_count_ == kReady) {
+    ++counts_.overflow;
+    return;
+  }
+  const auto end = readings.begin() + static_cast<std::ptrdiff_t>(count_);
+  const auto value_of = [](const Reading* reading) {
+    return reading == nullptr ? std::numeric_limits<double>::quiet_NaN() : reading->accel_mps2;
+  };
+  Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
+  sample = Sample{.tick = next_tick_, .lost = true};
+  sample.time_ns = (*std::find_if(readings.begin(), end, [](const Reading* reading) {
+                     return reading != nullptr;
+                   }))->time_ns;
+  unsigned saturated = 0;
+  for (std::size_t c = 0; c < count_; ++c) {
+    if (c < kChannels) {
+      sample.accel_mps2[c] = value_of(readings[c]);
+    } else {
+      sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(value_of(readings[c]));
+    }
+    if (readings[c] != nullptr) saturated |= unsigned{readings[c]->saturated} << c;
+  }
+  sample.saturated = static_cast<std::uint8_t>(saturated);
+  counts_.completable += channels;
 }
 
 template <class Count>
@@ -192,6 +233,7 @@ void SampleAssembler::settle(std::int64_t wait_ticks) noexcept {
         emit(count_, readings);
       } else if (channels > 0) {
         ++counts_.incomplete;
+        emit_incomplete(readings, channels);
       }
       ++next_tick_;
     }
@@ -221,7 +263,7 @@ AssemblerCounts SampleAssembler::counts() const noexcept {
 FrameLedger ledger_of(const AssemblerCounts& counts, std::uint64_t kernel_drops) noexcept {
   FrameLedger ledger;
   ledger.kernel_drops = kernel_drops;
-  ledger.processed = counts.lanes * counts.samples;
+  ledger.processed = counts.lanes * counts.samples + counts.completable;
   ledger.error = counts.error;
   ledger.foreign = counts.foreign;
   std::uint64_t readings = 0;

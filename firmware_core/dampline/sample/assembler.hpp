@@ -19,6 +19,8 @@ struct AssemblerConfig {
   std::array<ChannelConfig, kChannels> channels{};  ///< indexed by Channel
   ExtraSignals extras{};                            ///< those that are named belong to every sample
   double sample_rate_hz{300.0};                     ///< nominal, within 10 % (50 % with counters)
+  /// So many instants in a row that lack the same channel are handed out, without a number there.
+  std::int64_t most_missing{0};
 };
 
 /// Monotone.
@@ -27,7 +29,8 @@ struct AssemblerCounts {
   std::uint64_t foreign{0};      ///< other people's: no channel wants the identifier
   std::uint64_t error{0};        ///< error frames
   std::uint64_t samples{0};      ///< complete instants
-  std::uint64_t incomplete{0};   ///< instants dropped because a channel was missing
+  std::uint64_t incomplete{0};   ///< instants that lacked a channel
+  std::uint64_t completable{0};  ///< readings of those that were handed out all the same
   std::uint64_t restarts{0};     ///< long pauses after which the channels were aligned anew
   std::uint64_t overflow{0};     ///< samples lost because pop() was not called
   std::size_t lanes{kChannels};  ///< channels that make a sample: the three, then the extras named
@@ -39,8 +42,8 @@ struct AssemblerCounts {
 ///
 /// Channels are aligned once by time, to the nearest tick, over the first kAlignFrames of each, and
 /// then kept by their counters. An instant waits kWaitTicks for its channels, so frames may swap;
-/// an instant that lacks a channel is dropped and the tick jumps. After a pause of kPauseTicks the
-/// channels are aligned anew. The work of one push() is bounded by kLaneSpan steps.
+/// an instant that lacks a channel is dropped and the tick jumps, unless few are. After a pause of
+/// kPauseTicks the channels are aligned anew. The work of one push() is bounded by kLaneSpan steps.
 class SampleAssembler {
  public:
   static constexpr std::uint64_t kAlignFrames = 16;
@@ -77,6 +80,8 @@ class SampleAssembler {
   void settle(std::int64_t wait_ticks) noexcept;
   template <class Count>
   void emit(Count lanes, const Readings& readings) noexcept;
+  void emit_incomplete(const Readings& readings, std::size_t channels) noexcept;
+  [[nodiscard]] bool is_short_hole(std::size_t channel, std::int64_t tick) const noexcept;
   void restart(std::int64_t time_ns) noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
   /// How many channels have the tick; null for the others.
@@ -89,6 +94,7 @@ class SampleAssembler {
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
 
+  std::int64_t most_missing_;
   std::size_t count_{kChannels};                 // of lanes that are used
   std::array<std::size_t, kExtras> extra_of_{};  // by the lane after the three
   std::array<ChannelLane, kMostLanes> lanes_;

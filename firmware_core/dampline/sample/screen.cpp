@@ -12,9 +12,6 @@ namespace {
 constexpr double kFlatTopRms = 4.0;  // smaller extremes repeat by chance
 constexpr double kSteepSteps = 6.0;
 constexpr double kSameValue = 1e-9;  // rounding of a value that was printed
-constexpr double kNoNumberMps2 = 1e6;
-
-bool is_number(double accel_mps2) noexcept { return std::abs(accel_mps2) < kNoNumberMps2; }
 }  // namespace
 
 template <std::size_t kMost>

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dampline/guard/block_series.hpp"
+#include "dampline/guard/fault_log.hpp"
+
+namespace dampline {
+
+/// Whether samples are taken at uneven times. An instant that is off by e_n changes a sample by
+/// a'(t_n) e_n: the difference of two wheelsets that see the same track grows with the momentary
+/// slope of the acceleration, and not with the acceleration itself. What else the wheelsets do not
+/// share grows with both alike, since both are large where the track is rough.
+///   (difference)^2 = c_0 + c_1 a'^2 + c_2 w^2 a^2,   w^2 = <a'^2> / <a^2>,
+///   variance of e = (c_1 - c_2) / 2, of each wheelset where both are alike.
+/// What is proportional to a and a' throughout (a gain, a delay) is taken from the difference.
+class JitterWatch {
+ public:
+  /// Some samples, which an impact may spoil.
+  struct Chunk {
+    double samples{0.0};
+    double aa{0.0}, dd{0.0}, ad{0.0}, ae{0.0}, de{0.0};  // a: wheelset 2, d: its slope
+    double ee{0.0}, aaaa{0.0}, aadd{0.0}, dddd{0.0}, aaee{0.0}, ddee{0.0};
+    void add(const Chunk& other) noexcept;
+  };
+
+  explicit JitterWatch(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
+
+  /// `slope`: per sample; `difference`: wheelset 2 less wheelset 1, delayed.
+  void update(double accel_mps2, double slope, double difference_mps2) noexcept;
+  /// The samples since the last call belong to the block, or are dropped.
+  void end_chunk(bool sound) noexcept;
+  void close_block(bool sound, std::int64_t tick, FaultLog& log) noexcept;
+  void restart() noexcept { chunk_ = block_ = {}; }
+
+ private:
+  double rate_hz_;
+  double gain_{0.0};   // of the difference on a and on d, in the block before
+  double delay_{0.0};  // samples
+  Chunk chunk_{};
+  Chunk block_{};
+  BlockSeries variance_;  // samples^2
+};
+
+}  // namespace dampline
