@@ -127,9 +127,8 @@ inline Decision decide(const GuardRecord& record) {
   run->finish();
   const auto statistics = std::make_unique<Statistics>();
   run->statistics(*statistics);
-  effect::Circumstances circumstances{run->faults(),
-                                      find_parameter_drift(*statistics, Estimator::kBlockS)};
-  hold_against_faults(circumstances.faults, circumstances.drift);
+  const effect::Circumstances circumstances = effect::circumstances_of(
+      run->faults(), find_parameter_drift(*statistics, Estimator::kBlockS));
   app::TruckRecord truck;
   truck.sample_rate_hz = core.estimator.sample_rate_hz;
   truck.newest_tick = samples;

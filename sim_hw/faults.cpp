@@ -231,8 +231,9 @@ double FaultyRecord::distorted(std::size_t channel, double accel_mps2, double ti
     const double length = std::max(faults_.end_s - faults_.start_s, 1e-9);
     const double progress = std::min((time_s - faults_.start_s) / length, 1.0);
     value *= 1.0 + faults_.gain_step[channel] + faults_.gain_drift[channel] * progress;
-    const double moved = (time_s - faults_.start_s) / std::max(faults_.dc_jump_time_s, 1e-9);
-    value += faults_.dc_jump_mps2[channel] * std::min(moved, 1.0);
+    const double left_s = faults_.dc_jump_time_s - (time_s - faults_.start_s);
+    const double moved = left_s > 0.0 ? 1.0 - left_s / faults_.dc_jump_time_s : 1.0;
+    value += moved * faults_.dc_jump_mps2[channel];
   }
   double noise = faults_.noise_mps2[channel];
   if (begun && time_s < faults_.end_s) noise = std::hypot(noise, faults_.burst_mps2[channel]);

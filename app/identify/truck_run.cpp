@@ -104,7 +104,6 @@ EstimatorConfig estimator_config(const Config& config) {
 
 // A standing car's wheelsets show their sensors' noise; in g a running car's show a tenth.
 constexpr double kLeastShakingInGMps2 = 0.1;
-constexpr double kMostShakingInGMps2 = 0.7;
 
 Magnitudes magnitudes_of(const TruckView& view, const Config& config) {
   constexpr double kGravityMps2 = 9.80665;
@@ -231,8 +230,8 @@ RunResult TruckRun<kParts>::finish(const MeasuredRate& rate, const std::string& 
     fill_methods(core_->density(), config_.car.moving_mass_kg, last.snapshot.stiffness_npm.value,
                  record, result);
   result.warnings = clipping_.warnings();
-  circumstances_ = {last.faults, find_parameter_drift(*statistics(), Estimator::kBlockS)};
-  hold_against_faults(circumstances_.faults, circumstances_.drift);
+  circumstances_ = effect::circumstances_of(
+      last.faults, find_parameter_drift(*statistics(), Estimator::kBlockS));
   describe_faults_of_all(core_->guard(), circumstances_.faults, circumstances_.drift, record,
                          rate_hz_, result);
   describe_alarms(last.alarms, record, result);
@@ -260,7 +259,7 @@ void TruckRun<kParts>::fail_unusable(const Snapshot& snapshot, const std::string
       why += fmt::format("{}{} ({})", why.empty() ? "" : ", ", blocks_[i], word);
   }
   const double shaking_mps2 = core_->guard().block().wheelset_mps2;
-  const bool may_be_g = shaking_mps2 > kLeastShakingInGMps2 && shaking_mps2 < kMostShakingInGMps2 &&
+  const bool may_be_g = shaking_mps2 > kLeastShakingInGMps2 && shaking_mps2 < kLeastShakingMps2 &&
                         blocks_[static_cast<std::size_t>(BlockStatus::kStill)] > counts.blocks / 2;
   if (may_be_g)
     why += fmt::format("; the wheelsets shake by {:.2g} m/s^2 rms: are the accelerations in g?",

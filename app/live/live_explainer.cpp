@@ -71,8 +71,8 @@ void LiveExplainer::run() {
 
 void LiveExplainer::judge() {
   Explained out;
-  circumstances_.drift = find_parameter_drift(*statistics_, Estimator::kBlockS);
-  hold_against_faults(circumstances_.faults, circumstances_.drift);
+  circumstances_ = effect::circumstances_of(circumstances_.faults,
+                                            find_parameter_drift(*statistics_, Estimator::kBlockS));
   TruckView view;
   view.first_tick = run_.first_tick();
   view.faults = circumstances_.faults;

@@ -30,9 +30,8 @@ constexpr double kNothingFitted = 0.8;  // of the variance, left
 constexpr double kSure = 3.0;           // deviations
 constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
 constexpr double kViscousSigmas = 5.0;
-constexpr double kLeastFriction = 0.01;    // of the weight
-constexpr double kLeastShakingMps2 = 0.7;  // rms of the wheelsets
-constexpr double kLeastFollow = 0.4;       // of the wheelsets' motion: in g it would be 0.11
+constexpr double kLeastFriction = 0.01;  // of the weight
+constexpr double kLeastFollow = 0.4;     // of the wheelsets' motion: in g it would be 0.11
 constexpr double kMostFollow = 3.0;
 
 using Reasons = std::vector<std::pair<Trust, std::string>>;

@@ -20,6 +20,9 @@ struct Explaining {
   bool impossible{false};  ///< friction or spring come out negative: no law of a truck
 };
 
+/// Of the wheelsets, rms: a running car shakes more, in g it seems to shake less.
+inline constexpr double kLeastShakingMps2 = 0.7;
+
 /// The one rule, for trucks and rigs, files and live runs: sets trust and its reasons, the gravest
 /// first, and the headline, which states numbers only where they are trusted. Without an
 /// explanation (null) the fit alone is judged.

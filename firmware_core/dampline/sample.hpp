@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,12 +30,6 @@ struct Sample {
   std::uint8_t bridged{0};    ///< bit c set: channel c had no value and was put in; then the extras
   std::array<float, kExtras> extra_mps2{};  ///< indexed by Extra; 0 where there is none
 };
-
-/// No accelerometer reaches what is no number.
-inline constexpr double kNoNumberMps2 = 1e6;
-[[nodiscard]] inline bool is_number(double accel_mps2) noexcept {
-  return std::abs(accel_mps2) < kNoNumberMps2;  // false for NaN
-}
 
 [[nodiscard]] inline bool is_bridged(const Sample& sample, std::size_t channel) noexcept {
   return (std::uint32_t{sample.bridged} >> channel & 1U) != 0;

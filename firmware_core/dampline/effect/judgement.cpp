@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include "dampline/sample/hole_bridge.hpp"
+
 namespace dampline::effect {
 namespace {
 
 constexpr double kMoreGain = 0.02;
-constexpr double kManyBridged = 0.01;  // of the samples: errors of single values look like strikes
 
 bool passes(FaultKind kind) noexcept {
   return kind == FaultKind::kSpikes || kind == FaultKind::kDcJump || kind == FaultKind::kNoiseBurst;
@@ -20,6 +21,12 @@ bool is_harmless(const Fault& fault) noexcept {
 }
 
 }  // namespace
+
+Circumstances circumstances_of(const FaultView& faults, const ParameterDrift& drift) noexcept {
+  Circumstances out{faults, drift};
+  hold_against_faults(out.faults, out.drift);
+  return out;
+}
 
 void withhold_effects(Explanation& explanation) noexcept {
   if (explanation.step_count == 0) return;
@@ -43,7 +50,7 @@ void disallow_mimics(const FaultView& faults, ExplainerConfig& config) noexcept 
   const auto list = faults.list();
   const bool passed =
       std::any_of(list.begin(), list.end(), [](const Fault& fault) { return passes(fault.kind); });
-  if (passed || faults.repairs.bridged.share > kManyBridged)
+  if (passed || faults.repairs.bridged.share > HoleBridge::kMany)
     config.allowed[static_cast<std::size_t>(Effect::kImpulsiveInput)] = false;
 }
 

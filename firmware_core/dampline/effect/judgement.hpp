@@ -14,6 +14,10 @@ struct Circumstances {
   ParameterDrift drift;
 };
 
+/// What faults do to the parameters is no change of theirs: hold_against_faults().
+[[nodiscard]] Circumstances circumstances_of(const FaultView& faults,
+                                             const ParameterDrift& drift) noexcept;
+
 /// An explanation that faults of the data and parameters that changed have been held against.
 struct Judgement {
   Explanation explanation;

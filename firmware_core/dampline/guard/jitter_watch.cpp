@@ -16,60 +16,35 @@ constexpr double kFewestCompared = 300.0;  // samples of a block
 
 }  // namespace
 
-void JitterWatch::Chunk::add(const Chunk& o) noexcept {
-  samples += o.samples;
-  aa += o.aa;
-  dd += o.dd;
-  ad += o.ad;
-  ae += o.ae;
-  de += o.de;
-  ee += o.ee;
-  aaaa += o.aaaa;
-  aadd += o.aadd;
-  dddd += o.dddd;
-  aaee += o.aaee;
-  ddee += o.ddee;
-}
-
-void JitterWatch::update(double a, double d, double difference) noexcept {
-  const double rest = difference - gain_ * a - delay_ * d;
+void JitterWatch::update(double a, double d, double f) noexcept {
+  const double e = f - gain_ * a - delay_ * d;
   const double aa = a * a;
   const double dd = d * d;
-  const double ee = rest * rest;
-  chunk_.samples += 1.0;
-  chunk_.aa += aa;
-  chunk_.dd += dd;
-  chunk_.ad += a * d;
-  chunk_.ae += a * difference;
-  chunk_.de += d * difference;
-  chunk_.ee += ee;
-  chunk_.aaaa += aa * aa;
-  chunk_.aadd += aa * dd;
-  chunk_.dddd += dd * dd;
-  chunk_.aaee += aa * ee;
-  chunk_.ddee += dd * ee;
+  const double ee = e * e;
+  chunk_ +=
+      Sums{{1.0, aa, dd, a * d, a * f, d * f, ee, aa * aa, aa * dd, dd * dd, aa * ee, dd * ee}};
 }
 
 void JitterWatch::end_chunk(bool sound) noexcept {
-  if (sound) block_.add(chunk_);
-  chunk_ = {};
+  if (sound) block_ += chunk_;
+  chunk_ = Sums::Zero();
 }
 
 void JitterWatch::close_block(bool sound, std::int64_t tick, FaultLog& log) noexcept {
-  const Chunk b = block_;
-  block_ = {};
-  if (!sound || b.samples < kFewestCompared) return;
-  const double determinant = b.aa * b.dd - b.ad * b.ad;
+  const Sums b = block_;
+  block_ = Sums::Zero();
+  if (!sound || b[kSamples] < kFewestCompared) return;
+  const double determinant = b[kAA] * b[kDD] - b[kAD] * b[kAD];
   if (!(determinant > 0.0)) return;
-  gain_ = (b.dd * b.ae - b.ad * b.de) / determinant;
-  delay_ = (b.aa * b.de - b.ad * b.ae) / determinant;
+  gain_ = (b[kDD] * b[kAF] - b[kAD] * b[kDF]) / determinant;
+  delay_ = (b[kAA] * b[kDF] - b[kAD] * b[kAF]) / determinant;
   using Square = Eigen::Matrix<double, 3, 3>;
   using Column = Eigen::Matrix<double, 3, 1>;
-  const double w2 = b.dd / b.aa;  // per sample^2
+  const double w2 = b[kDD] / b[kAA];  // per sample^2
   Square normal;
-  normal << b.samples, b.dd / w2, b.aa, b.dd / w2, b.dddd / (w2 * w2), b.aadd / w2, b.aa,
-      b.aadd / w2, b.aaaa;
-  const Column c = solve_cholesky<3>(normal, Column{b.ee, b.ddee / w2, b.aaee});
+  normal << b[kSamples], b[kDD] / w2, b[kAA], b[kDD] / w2, b[kDDDD] / (w2 * w2), b[kAADD] / w2,
+      b[kAA], b[kAADD] / w2, b[kAAAA];
+  const Column c = solve_cholesky<3>(normal, Column{b[kEE], b[kDDEE] / w2, b[kAAEE]});
   if (!std::isfinite(c[1])) return;
   variance_.add(0.5 * (c[1] - c[2]) / w2, tick);
   const double usual = variance_.median();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <array>
+#include <Eigen/Core>
 #include <cstdint>
 
 #include "dampline/guard/block_series.hpp"
@@ -17,14 +17,6 @@ namespace dampline {
 /// What is proportional to a and a' throughout (a gain, a delay) is taken from the difference.
 class JitterWatch {
  public:
-  /// Some samples, which an impact may spoil.
-  struct Chunk {
-    double samples{0.0};
-    double aa{0.0}, dd{0.0}, ad{0.0}, ae{0.0}, de{0.0};  // a: wheelset 2, d: its slope
-    double ee{0.0}, aaaa{0.0}, aadd{0.0}, dddd{0.0}, aaee{0.0}, ddee{0.0};
-    void add(const Chunk& other) noexcept;
-  };
-
   explicit JitterWatch(double sample_rate_hz) noexcept : rate_hz_{sample_rate_hz} {}
 
   /// `slope`: per sample; `difference`: wheelset 2 less wheelset 1, delayed.
@@ -32,14 +24,31 @@ class JitterWatch {
   /// The samples since the last call belong to the block, or are dropped.
   void end_chunk(bool sound) noexcept;
   void close_block(bool sound, std::int64_t tick, FaultLog& log) noexcept;
-  void restart() noexcept { chunk_ = block_ = {}; }
+  void restart() noexcept { chunk_ = block_ = Sums::Zero(); }
 
  private:
+  /// Over samples; a: wheelset 2, d: its slope, e: what is left of the difference f.
+  enum Sum : std::uint8_t {
+    kSamples,
+    kAA,
+    kDD,
+    kAD,
+    kAF,
+    kDF,
+    kEE,
+    kAAAA,
+    kAADD,
+    kDDDD,
+    kAAEE,
+    kDDEE
+  };
+  using Sums = Eigen::Array<double, 12, 1>;
+
   double rate_hz_;
   double gain_{0.0};   // of the difference on a and on d, in the block before
   double delay_{0.0};  // samples
-  Chunk chunk_{};
-  Chunk block_{};
+  Sums chunk_ = Sums::Zero();
+  Sums block_ = Sums::Zero();
   BlockSeries variance_;  // samples^2
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/sample/hole_bridge.hpp"
+
 namespace dampline {
 namespace {
 
@@ -32,7 +34,6 @@ constexpr double kLevelDoubt = 0.3;
 constexpr double kBurstDoubt = 1.2;
 constexpr double kImpulseShare = 1.5;  // impulses fall off towards half the rate, noise does not
 constexpr double kBridgeDoubt = 1.5;   // of the noise that bridged holes make
-constexpr double kManyBridged = 0.01;  // of the samples
 constexpr double kLasting = 1.4;       // noise over the usual difference of the wheelsets
 constexpr std::size_t kBurstBlocks = 5;
 constexpr std::uint64_t kFewImpacts = 3;  // a block
@@ -273,7 +274,7 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
 // Values that were put in are off by more now and then: they make no burst.
 void SpectralGuard::add_noise(std::size_t which, double power, std::int64_t tick) noexcept {
   BlockSeries& series = noise_[which];
-  if (bridged_.share > kManyBridged && series.size() > 0)
+  if (bridged_.share > HoleBridge::kMany && series.size() > 0)
     power = std::min(power, kBurstRatio[which] * series.median());
   series.add(power, tick);
 }

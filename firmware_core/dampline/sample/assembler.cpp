@@ -52,15 +52,15 @@ std::size_t SampleAssembler::find_all(Count lanes, std::int64_t tick,
 }
 
 template <class Count>
-void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
+bool SampleAssembler::write(Count lanes, const Readings& readings, bool lost) noexcept {
   if (ready_count_ == kReady) {
     ++counts_.overflow;
-    return;
+    return false;
   }
   Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
   sample.tick = next_tick_;
   sample.time_ns = readings[0]->time_ns;
-  sample.lost = false;
+  sample.lost = lost;
   unsigned saturated = 0;
   for (std::size_t c = 0; c < kChannels; ++c) {
     sample.accel_mps2[c] = readings[c]->accel_mps2;
@@ -71,8 +71,14 @@ void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
     saturated |= unsigned{readings[c]->saturated} << c;
   }
   sample.saturated = static_cast<std::uint8_t>(saturated);
+  return true;
+}
+
+template <class Count>
+void SampleAssembler::emit(Count lanes, const Readings& readings) noexcept {
+  if (!write(lanes, readings, false)) return;
   ++counts_.samples;
-  meter_.update(sample.tick, sample.time_ns);
+  meter_.update(next_tick_, readings[0]->time_ns);
 }
 
 bool SampleAssembler::is_short_hole(std::size_t channel, std::int64_t tick) const noexcept {
@@ -84,33 +90,19 @@ bool SampleAssembler::is_short_hole(std::size_t channel, std::int64_t tick) cons
   return length <= most_missing_;
 }
 
-void SampleAssembler::emit_incomplete(const Readings& readings, std::size_t channels) noexcept {
+// The channels that are missing read no number, at the time of one that is not.
+void SampleAssembler::emit_incomplete(Readings readings, std::size_t channels) noexcept {
+  Reading nothing;
+  for (std::size_t c = count_; c-- > 0;) {
+    if (readings[c] != nullptr)
+      nothing.time_ns = readings[c]->time_ns;
+    else if (!is_short_hole(c, next_tick_))
+      return;
+  }
+  nothing.accel_mps2 = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t c = 0; c < count_; ++c)
-    if (readings[c] == nullptr && !is_short_hole(c, next_tick_)) return;
-  if (ready_count_ == kReady) {
-    ++counts_.overflow;
-    return;
-  }
-  const auto end = readings.begin() + static_cast<std::ptrdiff_t>(count_);
-  const auto value_of = [](const Reading* reading) {
-    return reading == nullptr ? std::numeric_limits<double>::quiet_NaN() : reading->accel_mps2;
-  };
-  Sample& sample = ready_[(ready_first_ + ready_count_++) % kReady];
-  sample = Sample{.tick = next_tick_, .lost = true};
-  sample.time_ns = (*std::find_if(readings.begin(), end, [](const Reading* reading) {
-                     return reading != nullptr;
-                   }))->time_ns;
-  unsigned saturated = 0;
-  for (std::size_t c = 0; c < count_; ++c) {
-    if (c < kChannels) {
-      sample.accel_mps2[c] = value_of(readings[c]);
-    } else {
-      sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(value_of(readings[c]));
-    }
-    if (readings[c] != nullptr) saturated |= unsigned{readings[c]->saturated} << c;
-  }
-  sample.saturated = static_cast<std::uint8_t>(saturated);
-  counts_.completable += channels;
+    if (readings[c] == nullptr) readings[c] = &nothing;
+  if (write(count_, readings, true)) counts_.completable += channels;
 }
 
 template <class Count>

@@ -78,9 +78,12 @@ class SampleAssembler {
   void push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept;
   void align() noexcept;
   void settle(std::int64_t wait_ticks) noexcept;
+  /// The next instant; false where there is no room.
+  template <class Count>
+  bool write(Count lanes, const Readings& readings, bool lost) noexcept;
   template <class Count>
   void emit(Count lanes, const Readings& readings) noexcept;
-  void emit_incomplete(const Readings& readings, std::size_t channels) noexcept;
+  void emit_incomplete(Readings readings, std::size_t channels) noexcept;
   [[nodiscard]] bool is_short_hole(std::size_t channel, std::int64_t tick) const noexcept;
   void restart(std::int64_t time_ns) noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;

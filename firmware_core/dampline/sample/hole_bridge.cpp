@@ -8,6 +8,7 @@
 
 #include "dampline/numeric/cholesky.hpp"
 #include "dampline/numeric/wide.hpp"
+#include "dampline/sample/screen.hpp"
 
 namespace dampline {
 namespace {
@@ -96,17 +97,15 @@ bool HoleBridge::pop(Sample& out) noexcept {
 
 bool HoleBridge::complete(std::int64_t place) noexcept {
   Held& now = held(place);
-  if (now.missing == 0 && !refused_) return true;
+  if (now.missing == 0 && intact_ != place) return true;
   bool is_complete = true;
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const bool is_missing = (now.missing >> l & 1U) != 0;
-    lanes_[l].refused = is_missing && !fill(l, place);
+    lanes_[l].refused = is_missing(l, place) && !fill(l, place);
     is_complete = is_complete && !lanes_[l].refused;
     // Nobody looks at an extra by itself: the whole sample is none.
     if (lanes_[l].refused && l >= kChannels)
       now.sample.accel_mps2[0] = std::numeric_limits<double>::quiet_NaN();
   }
-  refused_ = !is_complete;
   if (now.sample.bridged != 0) ++bridged_;
   return is_complete;
 }
@@ -133,69 +132,75 @@ std::int64_t HoleBridge::last_of(std::int64_t place) noexcept {
   return last;
 }
 
-bool HoleBridge::is_short(std::size_t lane, std::int64_t place) noexcept {
-  const std::int64_t last = last_of(place);
+bool HoleBridge::is_short(std::size_t lane, std::int64_t place, std::int64_t last) noexcept {
   std::int64_t end = place;
-  while (end <= last && (held(end).missing >> lane & 1U) != 0) ++end;
+  while (end <= last && is_missing(lane, end)) ++end;
   return end - place <= kMostMissing && last - end + 1 >= kLeastAhead;
 }
 
-// The prediction's errors from this place on are linear in the unknown values: least squares.
-bool HoleBridge::fill(std::size_t lane, std::int64_t place) noexcept {
-  Lane& l = lanes_[lane];
-  const std::int64_t first = std::max(held(place).first, intact_);
-  if (l.refused || place - first < kLeastBefore || !is_short(lane, place)) return false;
-  if (l.learned < 0 || place - l.learned >= kLearnAgain) learn(l, place, first);
-  std::int64_t last = last_of(place);
-  std::array<std::int64_t, kMostUnknown> unknown{};
-  int size = 0;
+HoleBridge::Unknown HoleBridge::unknown_of(std::size_t lane, std::int64_t place,
+                                           std::int64_t last) noexcept {
+  Unknown out{.last = last};
   for (std::int64_t i = place; i <= last; ++i) {
-    if ((held(i).missing >> lane & 1U) == 0) continue;
-    if (size == kMostUnknown) {
-      last = i - 1;
-      break;
+    if (!is_missing(lane, i)) continue;
+    if (out.size == kMostUnknown) {
+      out.last = i - 1;
+      return out;
     }
-    unknown[static_cast<std::size_t>(size++)] = i;
-    put(l, i, l.mean);
+    out.place[static_cast<std::size_t>(out.size++)] = i;
   }
+  return out;
+}
+
+// The prediction's errors from here on are linear in the unknown values, the first of which is
+// wanted: least squares.
+bool HoleBridge::solve(const Lane& lane, std::int64_t first, const Unknown& unknown,
+                       Estimate& out) noexcept {
   using Solver = Cholesky<kMostUnknown>;
   Solver::Matrix normal = Solver::Matrix::Zero();
   Solver::Vector right = Solver::Vector::Zero();
-  for (std::int64_t t = std::max(place, first + kOrder); t <= last; ++t) {
-    const double* const newest = up_to(l, t);
+  for (std::int64_t t = std::max(unknown.place[0], first + kOrder); t <= unknown.last; ++t) {
+    const double* const newest = up_to(lane, t);
     double known = 0.0;
     for (std::int64_t k = 0; k <= kOrder; ++k)
-      known += l.model[static_cast<std::size_t>(k)] * (newest[-k] - l.mean);
+      if (is_number(newest[-k]))
+        known += lane.model[static_cast<std::size_t>(k)] * (newest[-k] - lane.mean);
     const auto weight = [&](int i) {
-      const std::int64_t lag = t - unknown[static_cast<std::size_t>(i)];
-      return lag < 0 || lag > kOrder ? 0.0 : l.model[static_cast<std::size_t>(lag)];
+      const std::int64_t lag = t - unknown.place[static_cast<std::size_t>(i)];
+      return lag < 0 || lag > kOrder ? 0.0 : lane.model[static_cast<std::size_t>(lag)];
     };
-    for (int i = 0; i < size; ++i) {
+    for (int i = 0; i < unknown.size; ++i) {
       right[i] -= weight(i) * known;
       for (int j = 0; j <= i; ++j) normal(i, j) += weight(i) * weight(j);
     }
   }
   Solver solver;
-  const bool is_found = solver.factor(normal, size);
-  Solver::Vector doubt = Solver::Vector::Unit(0);  // becomes the first column of the inverse
-  if (is_found) {
-    solver.solve(right);
-    solver.solve(doubt);
-  }
-  for (int i = 0; i < size; ++i)
-    put(l, unknown[static_cast<std::size_t>(i)], std::numeric_limits<double>::quiet_NaN());
-  if (!is_found) return false;
-  const double value = l.mean + right[0];
-  put(l, place, value);
+  if (!solver.factor(normal, unknown.size)) return false;
+  solver.solve(right);
+  Solver::Vector column = Solver::Vector::Unit(0);  // becomes the first of the inverse
+  solver.solve(column);
+  out = {lane.mean + right[0], std::sqrt(lane.unforeseen * column[0])};
+  return true;
+}
+
+bool HoleBridge::fill(std::size_t index, std::int64_t place) noexcept {
+  Lane& lane = lanes_[index];
+  const std::int64_t first = std::max(held(place).first, intact_);
+  const std::int64_t last = last_of(place);
+  if (lane.refused || place - first < kLeastBefore || !is_short(index, place, last)) return false;
+  if (lane.learned < 0 || place - lane.learned >= kLearnAgain) learn(lane, place, first);
+  Estimate found;
+  if (!solve(lane, first, unknown_of(index, place, last), found)) return false;
+  put(lane, place, found.value);
   Sample& sample = held(place).sample;
-  if (lane < kChannels) {
-    sample.accel_mps2[lane] = value;
+  if (index < kChannels) {
+    sample.accel_mps2[index] = found.value;
   } else {
-    sample.extra_mps2[lane - kChannels] = static_cast<float>(value);
+    sample.extra_mps2[index - kChannels] = static_cast<float>(found.value);
   }
-  sample.bridged = static_cast<std::uint8_t>(sample.bridged | 1U << lane);
-  ++l.filled;
-  l.sum_squares += l.unforeseen * doubt[0];
+  sample.bridged = static_cast<std::uint8_t>(sample.bridged | 1U << index);
+  ++lane.filled;
+  lane.sum_squares += found.std * found.std;
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "dampline/faults.hpp"
 #include "dampline/sample.hpp"
+#include "dampline/snapshot.hpp"
 
 namespace dampline {
 
@@ -25,6 +26,8 @@ class HoleBridge {
   static constexpr std::int64_t kAhead = 20;       ///< samples by which the output lags
   static constexpr std::int64_t kOrder = 16;       ///< samples from which the next is predicted
   static constexpr std::int64_t kPast = 512;       ///< samples from which that is learned
+  /// Share of samples from which on errors of what was put in look like bursts and strikes.
+  static constexpr double kMany = 0.01;
 
   HoleBridge() noexcept;
 
@@ -51,6 +54,12 @@ class HoleBridge {
     std::int64_t first{0};     // place of the first sample from which ticks go on to this one
     std::uint32_t missing{0};  // bit l: lane l has no value
   };
+  /// Missing values of a lane, and the last place that helps to find them.
+  struct Unknown {
+    std::array<std::int64_t, kMostUnknown> place{};
+    int size{0};
+    std::int64_t last{0};
+  };
   struct Lane {
     /// By place, modulo kKept, each twice so that the newest kKept lie in one piece.
     std::array<double, 2 * kKept> values{};
@@ -74,8 +83,15 @@ class HoleBridge {
   }
   /// False when it came out with a hole that makes it useless.
   [[nodiscard]] bool complete(std::int64_t place) noexcept;
-  [[nodiscard]] bool fill(std::size_t lane, std::int64_t place) noexcept;
-  [[nodiscard]] bool is_short(std::size_t lane, std::int64_t place) noexcept;
+  [[nodiscard]] bool fill(std::size_t index, std::int64_t place) noexcept;
+  [[nodiscard]] bool is_missing(std::size_t lane, std::int64_t place) noexcept {
+    return (held(place).missing >> lane & 1U) != 0;
+  }
+  [[nodiscard]] bool is_short(std::size_t lane, std::int64_t place, std::int64_t last) noexcept;
+  [[nodiscard]] Unknown unknown_of(std::size_t lane, std::int64_t place,
+                                   std::int64_t last) noexcept;
+  [[nodiscard]] static bool solve(const Lane& lane, std::int64_t first, const Unknown& unknown,
+                                  Estimate& out) noexcept;
   [[nodiscard]] std::int64_t last_of(std::int64_t place) noexcept;
   void learn(Lane& lane, std::int64_t place, std::int64_t first) noexcept;
 
@@ -86,7 +102,6 @@ class HoleBridge {
   std::int64_t next_{0};    // place that comes out next
   std::int64_t intact_{0};  // first place after the newest that stayed incomplete
   std::size_t slot_{0};     // of the next place in the lanes
-  bool refused_{false};     // the newest that came out stayed incomplete
   bool finished_{false};
   std::uint64_t bridged_{0};  // samples
 };

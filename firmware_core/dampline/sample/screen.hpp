@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,6 +13,12 @@ namespace dampline {
 
 /// In order of rank: a sample with several faults has the last.
 enum class Verdict : std::uint8_t { kGood, kSpoilt, kStuck, kSaturated, kNotFinite };
+
+/// No accelerometer reaches what is no number.
+inline constexpr double kNoNumberMps2 = 1e6;
+[[nodiscard]] inline bool is_number(double accel_mps2) noexcept {
+  return std::abs(accel_mps2) < kNoNumberMps2;  // false for NaN
+}
 
 /// A sample and whether its values are what the car did.
 struct Screened {
