@@ -64,6 +64,10 @@ Truths truths_of(const sim::TruckConfig& t, const Planted& planted, double mean_
     out.emplace_back("presliding_hysteresis_force", level_n);
     out.emplace_back("presliding_hysteresis_distance", t.hysteresis.presliding_distance_m);
   }
+  if (e == "viscoelastic") {
+    out.emplace_back("viscoelastic_stiffness", t.hysteresis.viscoelastic_npm);
+    out.emplace_back("viscoelastic_time", t.hysteresis.viscoelastic_s);
+  }
   if (e == "backlash") {
     out.emplace_back("backlash_force", level_n);
     // To where half the force is there.
@@ -151,6 +155,10 @@ std::vector<OtherKind> other_kinds() {
        [](double s, double) {
          return Truths{{"presliding_hysteresis_force", kCoulombN},
                        {"presliding_hysteresis_distance", 1.5e-4 * s}};
+       }},
+      {"viscoelastic", [](double s) { return other::viscoelastic(2.7e6 * s, 0.034); },
+       [](double s, double) {
+         return Truths{{"viscoelastic_stiffness", 2.7e6 * s}, {"viscoelastic_time", 0.034}};
        }},
       {"backlash", [](double s) { return other::backlash(3.3e-4 * s); },
        [](double s, double) {

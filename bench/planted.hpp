@@ -105,6 +105,7 @@ inline void tell_truth(const sim::SimulationConfig& c, Planted& planted) {
   if (e == "stribeck") set("stribeck_share", t.damping.stribeck_share);
   if (e == "presliding_hysteresis")
     set("presliding_hysteresis_distance", t.hysteresis.presliding_distance_m);
+  if (e == "viscoelastic") set("viscoelastic_stiffness", t.hysteresis.viscoelastic_npm);
   if (e == "backlash") set("backlash_gap", t.hysteresis.backlash_gap_m);
   if (e == "bump_stop") set("bump_stop_gap", t.stiffness.bump_gap_m);
   if (e == "cubic_stiffness") set("cubic_stiffness", t.stiffness.cubic_npm3);

@@ -8,7 +8,18 @@
 namespace dampline::sim {
 namespace {
 
-enum : std::size_t { kY, kV, kPitch, kPitchRate, kBend, kBendRate, kZeta1, kZeta2 };
+enum : std::size_t {
+  kY,
+  kV,
+  kPitch,
+  kPitchRate,
+  kBend,
+  kBendRate,
+  kZeta1,
+  kZeta2,
+  kStretch1,
+  kStretch2
+};
 
 }  // namespace
 
@@ -26,7 +37,8 @@ TruckConfig empty_truck() noexcept {
 Truck::Truck(const TruckConfig& config)
     : config_(config),
       plain_(config.modes.pitch_inertia_kgm2 <= 0.0 && config.modes.flexible_share <= 0.0 &&
-             config.hysteresis.presliding_distance_m <= 0.0),
+             config.hysteresis.presliding_distance_m <= 0.0 &&
+             config.hysteresis.viscoelastic_npm <= 0.0),
       drifts_(config.drift.active()) {
   set_parameters(0.0);
   if (drifts_) set_parameters(config.drift.start_s - 1.0);
@@ -51,13 +63,15 @@ void Truck::set_motion(double deflection_m, double velocity_mps) noexcept {
   static_cast<void>(rate(state_, {}));
 }
 
-Truck::Force Truck::force(double y, double v, double zeta, const Play& play) const noexcept {
+Truck::Force Truck::force(double y, double v, const Memory& memory) const noexcept {
   const HysteresisEffects& history = config_.hysteresis;
   const bool presliding = history.presliding_distance_m > 0.0;
-  const double sign = presliding ? zeta : smooth_sign(v / config_.law_width_mps);
+  const double sign = presliding ? memory.zeta : smooth_sign(v / config_.law_width_mps);
   double friction = sign * (sign > 0.0 ? friction_positive_n_ : friction_negative_n_) *
                     friction_factor(config_.damping, y, v);
-  if (history.backlash_gap_m > 0.0) friction *= play.engagement(history.backlash_gap_m, y, v);
+  if (history.backlash_gap_m > 0.0)
+    friction *= memory.play.engagement(history.backlash_gap_m, y, v);
+  friction += history.viscoelastic_npm * memory.stretch_m;
   return {friction + added_damping_n(config_.damping, v),
           stiffness_npm_ * y + added_stiffness_n(config_.stiffness, y)};
 }
@@ -70,10 +84,10 @@ Truck::State Truck::rate(const State& state, const Excitation& excitation) noexc
   if (modes.pitch_inertia_kgm2 > 0.0) {
     const double d = state[kPitch];
     const double d_rate = state[kPitchRate];
-    const Force first =
-        force(state[kY] + 2.0 * d, state[kV] + 2.0 * d_rate, state[kZeta1], play_[0]);
-    const Force second =
-        force(state[kY] - 2.0 * d, state[kV] - 2.0 * d_rate, state[kZeta2], play_[1]);
+    const Force first = force(state[kY] + 2.0 * d, state[kV] + 2.0 * d_rate,
+                              {state[kZeta1], state[kStretch1], play_[0]});
+    const Force second = force(state[kY] - 2.0 * d, state[kV] - 2.0 * d_rate,
+                               {state[kZeta2], state[kStretch2], play_[1]});
     total = {0.5 * (first.damping_n + second.damping_n),
              0.5 * (first.restoring_n + second.restoring_n)};
     const double moment_arm = modes.pitch_half_wheelbase_m;
@@ -83,7 +97,7 @@ Truck::State Truck::rate(const State& state, const Excitation& excitation) noexc
     rates[kPitchRate] = -moment_arm * moment_arm / modes.pitch_inertia_kgm2 * difference -
                         0.5 * (wheelset[0] - wheelset[1]);
   } else {
-    total = force(state[kY], state[kV], state[kZeta1], play_[0]);
+    total = force(state[kY], state[kV], {state[kZeta1], state[kStretch1], play_[0]});
   }
   double push = excitation.force_n - total.damping_n - total.restoring_n;
   double mass = mass_kg_;
@@ -102,6 +116,13 @@ Truck::State Truck::rate(const State& state, const Excitation& excitation) noexc
   if (const double distance = config_.hysteresis.presliding_distance_m; distance > 0.0) {
     rates[kZeta1] = dahl_rate_ps(distance, state[kZeta1], state[kV] + 2.0 * state[kPitchRate]);
     rates[kZeta2] = dahl_rate_ps(distance, state[kZeta2], state[kV] - 2.0 * state[kPitchRate]);
+  }
+  if (config_.hysteresis.viscoelastic_npm > 0.0) {
+    const double time_s = config_.hysteresis.viscoelastic_s;
+    rates[kStretch1] =
+        stretch_rate_mps(time_s, state[kStretch1], state[kV] + 2.0 * state[kPitchRate]);
+    rates[kStretch2] =
+        stretch_rate_mps(time_s, state[kStretch2], state[kV] - 2.0 * state[kPitchRate]);
   }
   seen_ = {state[kY], state[kV], frame, total.damping_n, total.restoring_n};
   return rates;
@@ -139,6 +160,7 @@ int Truck::parts_of(double step_s) const noexcept {
     const double arm = modes.pitch_half_wheelbase_m;
     fastest += 2.0 * slope * arm * arm / modes.pitch_inertia_kgm2;
   }
+  if (config_.hysteresis.viscoelastic_npm > 0.0) fastest += 1.0 / config_.hysteresis.viscoelastic_s;
   if (presliding) fastest += 0.1 / config_.hysteresis.presliding_distance_m;  // at 0.1 m/s
   return std::clamp(static_cast<int>(std::ceil(fastest * step_s)), 1, 64);
 }

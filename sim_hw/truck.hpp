@@ -58,13 +58,18 @@ class Truck {
 
  private:
   // y, v; of the pitch d = a theta - (z_1 - z_2) / 2 and its rate; of the flexible mass its way
-  // relative to the frame and its rate; Dahl's zeta per wheelset
-  static constexpr std::size_t kStates = 8;
+  // relative to the frame and its rate; Dahl's zeta and the stretch of the viscoelastic spring per
+  // wheelset
+  static constexpr std::size_t kStates = 10;
   using State = std::array<double, kStates>;
   struct Force {
     double damping_n, restoring_n;
   };
-  [[nodiscard]] Force force(double y, double v, double zeta, const Play& play) const noexcept;
+  struct Memory {
+    double zeta, stretch_m;
+    const Play& play;
+  };
+  [[nodiscard]] Force force(double y, double v, const Memory& memory) const noexcept;
   [[nodiscard]] State rate(const State& state, const Excitation& excitation) noexcept;
   void set_parameters(double time_s) noexcept;
   template <std::size_t N>

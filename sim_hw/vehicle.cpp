@@ -33,7 +33,8 @@ VehicleMasses masses_of(const VehicleConfig& vehicle, const TruckConfig& truck) 
 
 bool Vehicle::supports(const TruckConfig& truck) noexcept {
   return truck.modes.flexible_share <= 0.0 && truck.hysteresis.presliding_distance_m <= 0.0 &&
-         truck.hysteresis.backlash_gap_m <= 0.0 && !truck.drift.active();
+         truck.hysteresis.backlash_gap_m <= 0.0 && truck.hysteresis.viscoelastic_npm <= 0.0 &&
+         !truck.drift.active();
 }
 
 Vehicle::Vehicle(const VehicleConfig& vehicle, const TruckConfig& truck)

@@ -8,7 +8,7 @@ namespace dampline::app {
 namespace {
 
 /// Names of the physical effects that a model may contain or lack.
-constexpr std::array<std::string_view, 21> kEffects{"viscous",
+constexpr std::array<std::string_view, 22> kEffects{"viscous",
                                                     "asymmetric_viscous",
                                                     "quadratic_damping",
                                                     "coulomb",
@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 21> kEffects{"viscous",
                                                     "offset_force",
                                                     "progressive_friction",
                                                     "stribeck",
+                                                    "viscoelastic",
                                                     "presliding_hysteresis",
                                                     "backlash",
                                                     "bump_stop",

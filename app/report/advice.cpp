@@ -117,6 +117,11 @@ constexpr std::array kEffects{
     Advice{"quadratic_damping", "Damping that grows with the square of speed",
            "Check a hydraulic damper for a blocked bore or thick oil.",
            "Look for oil or air forced through a narrow bore."},
+    Advice{
+        "viscoelastic", "A spring behind a dashpot: stiffer and damped the faster it moves",
+        "Look for rubber in the suspension (pads, bushes, liners), or a hydraulic damper on soft "
+        "mounts.",
+        "Look for rubber, or a hydraulic damper on soft mounts."},
     Advice{"progressive_friction", "Friction that grows with deflection",
            "Load-dependent friction (wedges, links) works: this is its design. Where it should be "
            "constant, check wedges, "

@@ -93,8 +93,9 @@ void set_vehicle(const SimulateOptions& options, sim::SimulationConfig& config) 
 void check_vehicle(const sim::SimulationConfig& config) {
   if (!config.vehicle || sim::Vehicle::supports(config.truck)) return;
   throw UsageError(
-      "--vehicle: an effect with a memory of its own (pre-sliding, backlash, a flexible body, a "
-      "drift), expected one that the whole car knows, or a truck alone");
+      "--vehicle: an effect with a memory of its own (pre-sliding, backlash, a viscoelastic "
+      "element, a flexible body, a drift), expected one that the whole car knows, or a truck "
+      "alone");
 }
 
 }  // namespace

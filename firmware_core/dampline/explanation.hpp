@@ -16,6 +16,7 @@ enum class Effect : std::uint8_t {
   kViscous,
   kAsymmetricViscous,
   kQuadraticDamping,
+  kViscoelastic,
   kProgressiveFriction,
   kStribeck,
   kPreslidingHysteresis,

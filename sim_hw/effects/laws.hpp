@@ -64,12 +64,20 @@ struct HysteresisEffects {
   /// Free play of the friction damper: no friction force until the gap is taken up after each
   /// reversal. The force then rises over the last kBacklashRamp of the gap. 0: off.
   double backlash_gap_m{0.0};
+  /// A spring of this stiffness behind a dashpot, beside the suspension (Maxwell). 0: off.
+  double viscoelastic_npm{0.0};
+  double viscoelastic_s{0.02};  ///< dashpot over spring
 };
 inline constexpr double kBacklashRamp = 0.02;
 
 /// d zeta / dt of Dahl's law.
 [[nodiscard]] inline double dahl_rate_ps(double distance_m, double zeta, double v) noexcept {
   return (v - zeta * std::abs(v)) / distance_m;
+}
+
+/// d x / dt of the stretch x of a spring behind a dashpot.
+[[nodiscard]] inline double stretch_rate_mps(double time_s, double stretch_m, double v) noexcept {
+  return v - stretch_m / time_s;
 }
 
 /// The piston inside its play: it is dragged along only by the ends of the gap.

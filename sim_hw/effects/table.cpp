@@ -114,6 +114,13 @@ constexpr std::array<EffectParameter, 1> kPreslidingHysteresis{
     {{"distance_m", Domain::kPositive, Strength::kTimes, fixed<150>,
       set_truck<&TruckConfig::hysteresis, &HysteresisEffects::presliding_distance_m>}}};
 
+constexpr std::array<EffectParameter, 2> kViscoelastic{
+    {{"stiffness_npm", Domain::kNotNegative, Strength::kTimes,
+      [](const SimulationConfig& config) { return 0.4 * config.truck.stiffness_npm; },
+      set_truck<&TruckConfig::hysteresis, &HysteresisEffects::viscoelastic_npm>},
+     {"time_s", Domain::kPositive, Strength::kNone, fixed<20000>,
+      set_truck<&TruckConfig::hysteresis, &HysteresisEffects::viscoelastic_s>}}};
+
 constexpr std::array<EffectParameter, 1> kBacklash{
     {{"gap_m", Domain::kPositive, Strength::kTimes, fixed<300>,
       set_truck<&TruckConfig::hysteresis, &HysteresisEffects::backlash_gap_m>}}};
@@ -225,7 +232,7 @@ constexpr std::array<EffectParameter, 8> kImpulsiveInput{
      {"flat_length_m", Domain::kPositive, Strength::kNone, fixed<100000>,
       set_impulse<&ImpulseEffects::flat_length_m>}}};
 
-constexpr std::array<Effect, 20> kEffects{
+constexpr std::array<Effect, 21> kEffects{
     {{"viscous", "c v", kViscous},
      {"asymmetric_viscous", "c+ v for v > 0, c- v for v < 0", kAsymmetricViscous},
      {"quadratic_damping", "q v |v|", kQuadraticDamping},
@@ -238,6 +245,8 @@ constexpr std::array<Effect, 20> kEffects{
      {"stribeck", "friction times 1 + share exp(-|v| / speed)", kStribeck},
      {"presliding_hysteresis", "friction builds up over a distance after each reversal (Dahl)",
       kPreslidingHysteresis},
+     {"viscoelastic", "a spring behind a dashpot beside the suspension; time: dashpot over spring",
+      kViscoelastic},
      {"backlash", "no friction until a gap is taken up after each reversal", kBacklash},
      {"bump_stop", "contact beyond a gap; one_sided=1: for y > 0 only", kBumpStop},
      {"cubic_stiffness", "k3 y^3", kCubicStiffness},

@@ -77,6 +77,27 @@ TEST(Laws, DahlFrictionBuildsUpOverItsDistance) {
   }
 }
 
+TEST(Laws, ASpringBehindADashpotGivesWayInItsTime) {
+  Laws laws{{.scale_m = kScaleM}, kStepS};
+  static_cast<void>(laws(moving(0.0, 0.05)));
+  // Drawn at an even speed: x = v tau (1 - exp(-t / tau)); then held: x fades.
+  LawValues out;
+  constexpr int kDrawn = 30;
+  for (int n = 1; n <= kDrawn; ++n) out = laws(moving(0.05 * kStepS * n, 0.05));
+  const auto drawn_m = [](std::size_t i) {
+    return 0.05 * kRelaxationS[i] * (1.0 - std::exp(-kDrawn * kStepS / kRelaxationS[i]));
+  };
+  for (std::size_t i = 0; i < kRelaxations; ++i)
+    EXPECT_NEAR(out[kRelaxing + at(i)], drawn_m(i), 1e-6 * drawn_m(i)) << i;
+  for (int n = 0; n < 12; ++n) out = laws(moving(0.05 * kStepS * kDrawn, 0.0));
+  for (std::size_t i = 0; i < kRelaxations; ++i)
+    EXPECT_NEAR(out[kRelaxing + at(i)], drawn_m(i) * std::exp(-12 * kStepS / kRelaxationS[i]),
+                1e-6 * drawn_m(i))
+        << i;
+  laws.reset();
+  EXPECT_EQ(laws(moving(0.3, 0.0))[kRelaxing], 0.0F);
+}
+
 TEST(Laws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
   Laws laws{{.scale_m = kScaleM}, kStepS};
   const double gap_m = kBacklashGap[4] * kScaleM;

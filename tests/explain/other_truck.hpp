@@ -174,6 +174,14 @@ inline Plant backlash(double gap_m) {
   return out;
 }
 
+/// A spring behind a dashpot beside the suspension (Maxwell).
+inline Plant viscoelastic(double stiffness_npm, double time_s) {
+  return force([stiffness_npm, time_s, stretch_m = 0.0](const State& s) mutable {
+    stretch_m += kStepS * (s.velocity_mps - stretch_m / time_s);
+    return stiffness_npm * stretch_m;
+  });
+}
+
 /// A mass on a spring on the frame; its force on the frame comes through the suspension's balance.
 inline Plant mode(double share, double hz) {
   Plant out = force([share, w = 2.0 * M_PI * hz, x = 0.0, u = 0.0](const State& s) mutable {

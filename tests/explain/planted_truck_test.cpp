@@ -26,6 +26,7 @@ using dampline::test::Plant;
 using dampline::test::presliding;
 using dampline::test::sign;
 using dampline::test::State;
+using dampline::test::viscoelastic;
 
 Explained explained(const Plant& plant, std::uint64_t seed) {
   const dampline::test::TemporaryFile file{dampline::test::record_of(plant, seed), ".csv"};
@@ -72,6 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"quadratic_damping", "quadratic_damping", force([](const State& s) {
                   return 5.1e6 * s.velocity_mps * std::abs(s.velocity_mps);
                 })},
+        Planted{"viscoelastic", "viscoelastic", viscoelastic(2.7e6, 0.034)},
+        Planted{"soft_rubber", "viscoelastic", viscoelastic(1.1e6, 0.017)},
         Planted{"stribeck", "stribeck", level([](const State& s) {
                   const double u = s.velocity_mps / 0.012;
                   return kCoulombN * (1.0 + 0.45 * std::exp(-u * u));

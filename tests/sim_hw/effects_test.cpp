@@ -166,6 +166,23 @@ TEST(Effects, BuildFrictionUpOverADistanceAfterEachReversal) {
   EXPECT_GT(checked, 5000);
 }
 
+TEST(Effects, GiveWayBehindADashpot) {
+  SimulationConfig config = with("viscoelastic:stiffness_npm=2e6,time_s=0.1");
+  config.truck.friction_positive_n = config.truck.friction_negative_n = 0.0;
+  // Of y = A sin(w t): x = A w tau (cos(w t) + w tau sin(w t)) / (1 + (w tau)^2).
+  constexpr double kTurn = 6.0 * 0.1;  // drive_slowly()'s w times tau
+  double largest_n = 0.0;
+  int n = 0;
+  drive_slowly(config.truck, 2e-3, 4.0, [&](const TruckState& s) {
+    const double steady_m =
+        kTurn * (s.velocity_mps / 6.0 + kTurn * s.deflection_m) / (1.0 + kTurn * kTurn);
+    if (++n < 1200) return;  // until it is steady
+    EXPECT_NEAR(s.damping_force_n, 2e6 * steady_m, 20.0);
+    largest_n = std::max(largest_n, std::abs(s.damping_force_n));
+  });
+  EXPECT_NEAR(largest_n, 2e6 * 2e-3 * kTurn / std::hypot(1.0, kTurn), 40.0);
+}
+
 TEST(Effects, LetTheFrictionGoUntilTheGapIsTakenUp) {
   const SimulationConfig config = with("backlash:gap_m=5e-4");
   double last_v = 1.0;

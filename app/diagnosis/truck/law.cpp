@@ -44,6 +44,8 @@ double steady(int column, const effect::Grids& grids, double v, double sign) {
                       within<effect::kBacklashGaps>(column, effect::kBacklash) ||
                       within<effect::kPitchModes>(column, effect::kPitchSign);
   if (memory) return sign;
+  if (within<effect::kRelaxations>(column, effect::kRelaxing))
+    return v * grids.relaxation_s[static_cast<std::size_t>(column - effect::kRelaxing)];
   if (column == effect::kSpeedSquared) return v * std::abs(v);
   if (column == effect::kSpeed) return std::abs(v);
   return column == effect::kFrameOnce ? 0.5 * v : 0.0;  // v = 2 z_b' with the wheelsets at rest

@@ -33,6 +33,14 @@ void add_damping(CandidateList& out) noexcept {
   both.regressor[both.count++] = viscous_regressor();
 }
 
+void add_relaxations(const Grids& grids, CandidateList& out) noexcept {
+  for (std::size_t i = 0; i < kRelaxations; ++i) {
+    add_candidate(out, Effect::kViscoelastic, i, kPlainForm, 1, Regressor::of(kRelaxing + at(i)));
+    if (i + 1 < kRelaxations && !grids.is_fine(Effect::kViscoelastic))
+      add_pair(out, Effect::kViscoelastic, i, kPlainForm, 1, kRelaxing + at(i));
+  }
+}
+
 void add_friction(const Grids& grids, CandidateList& out) noexcept {
   add_candidate(out, Effect::kProgressiveFriction, 0, kPlainForm, 0, Regressor::of(kProgressive));
   add_candidate(out, Effect::kProgressiveFriction, 0, kAbsoluteForm, 0,
@@ -118,6 +126,7 @@ const char* name_of(Effect effect) noexcept {
   constexpr std::array<const char*, kEffects> kNames{"viscous",
                                                      "asymmetric_viscous",
                                                      "quadratic_damping",
+                                                     "viscoelastic",
                                                      "progressive_friction",
                                                      "stribeck",
                                                      "presliding_hysteresis",
@@ -152,6 +161,8 @@ namespace {
 
 Regressor point_of(const Candidate& c, std::size_t i) noexcept {
   switch (c.effect) {
+    case Effect::kViscoelastic:
+      return Regressor::of(kRelaxing + at(i));
     case Effect::kStribeck:
       return Regressor::of(kStribeck + at(i));
     case Effect::kPreslidingHysteresis:
@@ -170,6 +181,8 @@ Regressor point_of(const Candidate& c, std::size_t i) noexcept {
 /// Of the points of an effect's grid.
 std::size_t points_of(const Candidate& c, const Grids& grids) noexcept {
   switch (c.effect) {
+    case Effect::kViscoelastic:
+      return kRelaxations;
     case Effect::kStribeck:
       return kStribeckSpeeds;
     case Effect::kPreslidingHysteresis:
@@ -221,6 +234,7 @@ Candidate with_slopes(const Candidate& candidate, const Grids& grids) noexcept {
 void list_candidates(const BaseForce& base, const Grids& grids, CandidateList& out) noexcept {
   out.count = 0;
   add_damping(out);
+  add_relaxations(grids, out);
   add_friction(grids, out);
   add_stiffness(out);
   add_modes(grids, out);

@@ -13,6 +13,7 @@ inline constexpr std::size_t kStribeckSpeeds = 4;
 inline constexpr std::size_t kBumpGaps = 7;
 inline constexpr std::size_t kDahlDistances = 8;
 inline constexpr std::size_t kBacklashGaps = 8;
+inline constexpr std::size_t kRelaxations = 5;
 inline constexpr std::size_t kPitchModes = 9;
 inline constexpr std::size_t kFlexibleModes = 17;
 
@@ -29,6 +30,9 @@ inline constexpr std::array<double, kDahlDistances> kDahlDistance{0.05, 0.08, 0.
                                                                   0.32, 0.5,  0.8,   1.25};
 inline constexpr std::array<double, kBacklashGaps> kBacklashGap{0.1, 0.15, 0.22, 0.33,
                                                                 0.5, 0.75, 1.1,  1.7};
+/// Times in which a spring behind a dashpot (Maxwell) gives way, s: corners from 32 to 1.4 Hz,
+/// beyond which it is a dashpot or a spring.
+inline constexpr std::array<double, kRelaxations> kRelaxationS{0.005, 0.011, 0.024, 0.053, 0.117};
 struct PitchShape {
   double frequency_hz;
   double slip_m;  ///< F / (2 k): how far the spring must turn before friction yields
@@ -83,7 +87,8 @@ enum Column : int {
   kBumpDown = kBumpUp + static_cast<int>(kBumpGaps),          ///< max(-y - gap, 0)
   kDahl = kBumpDown + static_cast<int>(kBumpGaps),            ///< Dahl's zeta
   kBacklash = kDahl + static_cast<int>(kDahlDistances),       ///< sign v once the gap is taken up
-  kPitchSign = kBacklash + static_cast<int>(kBacklashGaps),   ///< mean of both wheelsets' signs
+  kRelaxing = kBacklash + static_cast<int>(kBacklashGaps),    ///< stretch of a Maxwell spring
+  kPitchSign = kRelaxing + static_cast<int>(kRelaxations),    ///< mean of both wheelsets' signs
   kModeBend = kPitchSign + static_cast<int>(kPitchModes),     ///< force of a mass on a spring
   kFrameRate = kModeBend + static_cast<int>(kFlexibleModes),  ///< z_b'''
   kFrameOnce,                                                 ///< z_b''' s^-2 : z_b'

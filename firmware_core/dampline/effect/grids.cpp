@@ -11,10 +11,11 @@ namespace {
 
 /// Ratios of neighbours, by round; the last one is kept.
 struct Ratios {
-  double length, frequency, pitch, slip, damping;
+  double length, time, frequency, pitch, slip, damping;
 };
-constexpr std::array<Ratios, 3> kRatios{
-    {{1.08, 1.03, 1.12, 1.3, 1.6}, {1.04, 1.015, 1.05, 1.12, 1.3}, {1.03, 1.01, 1.03, 1.08, 1.2}}};
+constexpr std::array<Ratios, 3> kRatios{{{1.08, 1.3, 1.03, 1.12, 1.3, 1.6},
+                                         {1.04, 1.15, 1.015, 1.05, 1.12, 1.3},
+                                         {1.03, 1.1, 1.01, 1.03, 1.08, 1.2}}};
 
 /// The point at a place between those of a grid.
 template <std::size_t N>
@@ -81,6 +82,9 @@ bool step_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
       return true;
     case Effect::kBacklash:
       around_place(step.place, r.length, grids.backlash_gap);
+      return true;
+    case Effect::kViscoelastic:
+      around_place(step.place, r.time, grids.relaxation_s);
       return true;
     case Effect::kUnmodelledMode:
       if (step.chosen.form == kPitchForm) {

@@ -23,6 +23,7 @@ struct Grids {
   std::array<double, kBumpGaps> bump_gap{kBumpGap};
   std::array<double, kDahlDistances> dahl_distance{kDahlDistance};
   std::array<double, kBacklashGaps> backlash_gap{kBacklashGap};
+  std::array<double, kRelaxations> relaxation_s{kRelaxationS};
   std::array<PitchShape, kPitchModes> pitch{kPitch};
   std::array<FlexibleShape, kFlexibleModes> flexible{flexible_shapes()};
 

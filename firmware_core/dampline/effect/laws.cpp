@@ -18,9 +18,19 @@ double decay(double x) noexcept {
 
 }  // namespace
 
+Laws::Laws(const Grids& grids, double step_s) noexcept
+    : grids_{grids}, pitch_{step_s, grids.pitch} {
+  for (std::size_t i = 0; i < kRelaxations; ++i) {
+    const double steps = step_s / grids.relaxation_s[i];
+    kept_[i] = std::exp(-steps);
+    taken_[i] = -std::expm1(-steps) / steps;
+  }
+}
+
 void Laws::reset() noexcept {
   any_ = false;
   zeta_.fill(0.0);
+  stretch_m_.fill(0.0);
   pitch_.reset();
 }
 
@@ -85,6 +95,16 @@ void Laws::memory(const Point& p, double sign, LawValues& out) noexcept {
     const double left_m = 0.5 * gap_m - towards * (y - piston_m_[i]);  // still to go to the end
     const double engaged = std::clamp(1.0 - left_m / (kEngagedOver * gap_m), 0.0, 1.0);
     out[kBacklash + at(i)] = single(engaged * towards * std::abs(sign));
+  }
+  relax(step_m, out);
+}
+
+/// x' = v - x / tau, exact at an even speed: the force k x is that of a spring k behind a dashpot
+/// k tau (Maxwell).
+void Laws::relax(double step_m, LawValues& out) noexcept {
+  for (std::size_t i = 0; i < kRelaxations; ++i) {
+    stretch_m_[i] = kept_[i] * stretch_m_[i] + taken_[i] * step_m;
+    out[kRelaxing + at(i)] = single(stretch_m_[i]);
   }
 }
 

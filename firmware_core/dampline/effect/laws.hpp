@@ -71,7 +71,7 @@ using LawValues = Eigen::Matrix<float, kLawColumns, 1>;
 class Laws {
  public:
   /// Precondition: grids.scale_m > 0.
-  Laws(const Grids& grids, double step_s) noexcept : grids_{grids}, pitch_{step_s, grids.pitch} {}
+  Laws(const Grids& grids, double step_s) noexcept;
 
   /// The columns at a point; points come in the order of time, `step_s` apart, since some laws
   /// remember.
@@ -84,12 +84,16 @@ class Laws {
   void friction(const Point& point, LawValues& out) const noexcept;
   void stiffness(double deflection_m, LawValues& out) const noexcept;
   void memory(const Point& point, double sign, LawValues& out) noexcept;
+  void relax(double step_m, LawValues& out) noexcept;
 
   Grids grids_;
   bool any_{false};
   double last_deflection_m_{0.0};
   std::array<double, kDahlDistances> zeta_{};
   std::array<double, kBacklashGaps> piston_m_{};
+  std::array<double, kRelaxations> stretch_m_{};
+  std::array<double, kRelaxations> kept_{};   // of a stretch, over one step
+  std::array<double, kRelaxations> taken_{};  // of a step's way
   PitchBank pitch_;
 };
 

@@ -25,6 +25,7 @@ struct LawErrors {
 constexpr LawErrors kPlainErrors{0.0025, 0.003, 0.0, 0.0};
 constexpr LawErrors kViscousErrors{0.012, 0.0, 0.05, 0.0};
 constexpr LawErrors kQuadraticErrors{0.005, 0.0, 0.015, 0.0};
+constexpr LawErrors kViscoelasticErrors{0.009, 0.004, 0.07, 0.09};
 constexpr LawErrors kStribeckErrors{0.025, 0.0, 0.35, 0.35};
 constexpr LawErrors kPreslidingErrors{0.002, 0.0, 0.008, 0.006};
 constexpr LawErrors kBacklashErrors{0.02, 0.006, 0.025, 0.012};
@@ -42,6 +43,8 @@ LawErrors errors_of(const Candidate& c) noexcept {
       return kViscousErrors;
     case Effect::kQuadraticDamping:
       return kQuadraticErrors;
+    case Effect::kViscoelastic:
+      return kViscoelasticErrors;
     case Effect::kStribeck:
       return kStribeckErrors;
     case Effect::kPreslidingHysteresis:
@@ -221,6 +224,11 @@ void describe_damping(const Part& p, double mass_kg, List& list, Step& step) noe
       put("viscous_positive", odd + first);
       return put("viscous_negative", odd - first);
     }
+    case Effect::kViscoelastic:
+      list.put(step, "viscoelastic_stiffness", mass_kg * (p.own * p.sum()), "N/m", p.errors().size);
+      return list.put(step, "viscoelastic_time",
+                      on_grid(p.grids.relaxation_s, p.candidate.variant, p.moved(0), 1.0), "s",
+                      p.errors().place);
     default:
       return;
   }
