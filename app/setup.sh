@@ -16,6 +16,7 @@ nettle-dev           SHA-256 of the input files and of a page's scripts
 zlib1g-dev           records compressed by gzip, Vector BLF, NumPy's .npz
 libzstd-dev          records compressed by zstd
 libmicrohttpd-dev    the page, the metrics and the events of a live run
+libgnutls28-dev      their readers' certificates
 libmosquitto-dev     a live run told to an MQTT broker
 libsqlite3-dev       the states of a fleet
 libgpiod-dev         marker lines and the status lamp
@@ -50,6 +51,7 @@ slurm-wlm            runs an archive's tasks
 munge                lets its parts know each other
 mosquitto            a broker
 mosquitto-clients    reads what it was told
+openssl              makes certificates
 sqlite3              reads the database of a fleet
 "
 readonly bus_packages="

@@ -224,7 +224,8 @@ Config load_config(const std::filesystem::path& file) {
   if (!dbc.empty() && std::filesystem::path{dbc}.is_relative())
     dbc = (file.parent_path() / dbc).string();
   for (std::string* path :
-       {&config.serve.token_file, &config.alarm.reference, &config.mqtt.password_file,
+       {&config.serve.token_file, &config.serve.cert_file, &config.serve.key_file,
+        &config.serve.client_ca_file, &config.alarm.reference, &config.mqtt.password_file,
         &config.mqtt.ca_file, &config.mqtt.cert_file, &config.mqtt.key_file})
     if (!path->empty() && std::filesystem::path{*path}.is_relative())
       *path = (file.parent_path() / *path).string();

@@ -104,8 +104,10 @@ struct LiveSettings {
 
 /// Where a live run can be seen while it runs.
 struct ServeSettings {
-  std::string address;     ///< "127.0.0.1:9464"; empty: nowhere
-  std::string token_file;  ///< its first line is what a reader must know; empty: loopback only
+  std::string address;              ///< "127.0.0.1:9464"; empty: nowhere
+  std::string token_file;           ///< its first line is what a reader must know; empty: nothing
+  std::string cert_file, key_file;  ///< of this server; empty: no TLS
+  std::string client_ca_file;       ///< who vouches for readers; empty: nobody has to
 };
 
 /// The MQTT broker that a live run tells.

@@ -194,8 +194,15 @@ void add_serve(ServeSettings& serve, Fields& out) {
                  "HOST:PORT of page, metrics and events, 127.0.0.1:9464; empty: nothing is served",
                  TextField{&serve.address, {}}});
   out.push_back({"serve", "token_file",
-                 "its first line is the token of readers; beyond this machine it is needed",
+                 "its first line is the token of readers; beyond this machine it is needed, or "
+                 "client_ca_file",
                  TextField{&serve.token_file, {}}});
+  out.push_back({"serve", "cert_file", "this server's certificate; empty: no TLS",
+                 TextField{&serve.cert_file, {}}});
+  out.push_back({"serve", "key_file", "and its key", TextField{&serve.key_file, {}}});
+  out.push_back({"serve", "client_ca_file",
+                 "certificates that each reader's is held against; empty: none is asked for",
+                 TextField{&serve.client_ca_file, {}}});
 }
 
 void add_mqtt(MqttSettings& mqtt, Fields& out) {

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "app/error.hpp"
 
@@ -69,6 +70,20 @@ bool same_secret(std::string_view given, const std::string& token) {
   return given.size() == token.size() && memeql_sec(given.data(), token.data(), token.size()) != 0;
 }
 
+/// Texts that the library reads and does not change.
+std::vector<MHD_OptionItem> tls_options(TlsSettings& tls) {
+  static std::string versions{"NORMAL:-VERS-ALL:+VERS-TLS1.3:+VERS-TLS1.2"};
+  std::vector<MHD_OptionItem> out;
+  if (tls.on())
+    out = {{MHD_OPTION_HTTPS_MEM_CERT, 0, tls.certificate.data()},
+           {MHD_OPTION_HTTPS_MEM_KEY, 0, tls.key.data()},
+           {MHD_OPTION_HTTPS_PRIORITIES, 0, versions.data()}};
+  if (!tls.client_authorities.empty())
+    out.push_back({MHD_OPTION_HTTPS_MEM_TRUST, 0, tls.client_authorities.data()});
+  out.push_back({MHD_OPTION_END, 0, nullptr});
+  return out;
+}
+
 void log_nothing(void* /*context*/, const char* /*format*/, va_list /*arguments*/) {}
 
 }  // namespace
@@ -109,6 +124,8 @@ struct HttpServer::Callbacks {
 HttpServer::HttpServer(HttpSettings settings) : settings_{std::move(settings)} {
   unsigned flags = MHD_ALLOW_SUSPEND_RESUME;
   if (settings_.address.is_ipv6()) flags |= MHD_USE_IPv6;
+  if (settings_.tls.on()) flags |= MHD_USE_TLS;
+  std::vector<MHD_OptionItem> tls = tls_options(settings_.tls);
   const auto* address = reinterpret_cast<const sockaddr*>(&settings_.address.socket);
   errno = 0;
   daemon_ = MHD_start_daemon(
@@ -116,7 +133,7 @@ HttpServer::HttpServer(HttpSettings settings) : settings_{std::move(settings)} {
       &log_nothing, nullptr, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_CONNECTION_LIMIT,
       kMostConnections, MHD_OPTION_CONNECTION_TIMEOUT, kTimeoutS,
       MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionBytes, MHD_OPTION_STRICT_FOR_CLIENT, 1,
-      MHD_OPTION_LISTEN_BACKLOG_SIZE, kBacklog, MHD_OPTION_END);
+      MHD_OPTION_LISTEN_BACKLOG_SIZE, kBacklog, MHD_OPTION_ARRAY, tls.data(), MHD_OPTION_END);
   if (daemon_ == nullptr)
     throw RunError{
         fmt::format("cannot serve: {}", errno != 0 ? std::strerror(errno) : "no server")};
@@ -152,6 +169,11 @@ void HttpServer::send(std::string event, std::string whole) {
   }
 }
 
+void HttpServer::take_connection(int socket) {
+  const auto* from = reinterpret_cast<const sockaddr*>(&settings_.address.socket);
+  static_cast<void>(MHD_add_connection(daemon_, socket, from, sizeof(sockaddr_in)));
+}
+
 void HttpServer::turn(std::chrono::milliseconds most, int wake) {
   MHD_UNSIGNED_LONG_LONG due_ms = 0;
   auto wait_ms = static_cast<MHD_UNSIGNED_LONG_LONG>(most.count());
@@ -185,6 +207,9 @@ int HttpServer::answer(const Request& request) {
   if (!knows_host(request.connection))
     return refuse(request.connection, MHD_HTTP_MISDIRECTED_REQUEST,
                   "this is not the machine that Host names\n");
+  if (!settings_.tls.client_authorities.empty() && !shows_certificate(request.connection))
+    return refuse(request.connection, MHD_HTTP_FORBIDDEN,
+                  "a certificate of a reader is needed that this server's authorities made\n");
   bool by_query = false;
   if (!has_token(request.connection, by_query))
     return refuse(request.connection, MHD_HTTP_UNAUTHORIZED,
@@ -197,7 +222,7 @@ int HttpServer::answer(const Request& request) {
 }
 
 bool HttpServer::knows_host(MHD_Connection* connection) const {
-  if (!settings_.token.empty()) return true;
+  if (settings_.knows_readers()) return true;
   const std::string_view host = value_of(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
   return host.empty() || names_loopback(host);
 }
@@ -228,9 +253,10 @@ int HttpServer::reply(MHD_Connection* connection, const Document& document, bool
   if (document.status == MHD_HTTP_UNAUTHORIZED)
     MHD_add_response_header(response.get(), MHD_HTTP_HEADER_WWW_AUTHENTICATE, "Bearer");
   if (set_cookie)  // for what the page itself asks for
-    MHD_add_response_header(
-        response.get(), MHD_HTTP_HEADER_SET_COOKIE,
-        fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", kCookie, settings_.token).c_str());
+    MHD_add_response_header(response.get(), MHD_HTTP_HEADER_SET_COOKIE,
+                            fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/{}", kCookie,
+                                        settings_.token, settings_.tls.on() ? "; Secure" : "")
+                                .c_str());
   return MHD_queue_response(connection, document.status, response.get());
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "app/serve/address.hpp"
+#include "app/serve/tls.hpp"
 
 struct MHD_Connection;
 struct MHD_Daemon;
@@ -19,7 +20,12 @@ namespace dampline::app {
 
 struct HttpSettings {
   Address address;
-  std::string token;  ///< empty: whoever reaches the address may read
+  std::string token;  ///< empty: none is asked for
+  TlsSettings tls{};
+  /// Not whoever reaches the address may read.
+  [[nodiscard]] bool knows_readers() const noexcept {
+    return !token.empty() || !tls.client_authorities.empty();
+  }
 };
 
 /// Documents and one stream of events over HTTP/1.1, read only, from the memory of this object. It
@@ -44,6 +50,10 @@ class HttpServer {
   /// An event for every reader of the stream. `whole`: what brings a new reader, or one that was
   /// left behind, up to date; good until the next call.
   void send(std::string event, std::string whole);
+
+  /// A connection that is already there, a stream socket that does not block; it is the server's
+  /// now.
+  void take_connection(int socket);
 
   /// Serves for at most this time, or until the descriptor `wake` can be read.
   void turn(std::chrono::milliseconds most, int wake);

@@ -30,12 +30,12 @@ constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 constexpr const char* kTextType = "text/plain; charset=utf-8";
 
 HttpSettings http_settings(const ServeSettings& serve) {
-  HttpSettings out{parse_address(serve.address, "[serve] address"), ""};
+  HttpSettings out{parse_address(serve.address, "[serve] address"), "", read_tls(serve)};
   if (!serve.token_file.empty()) out.token = read_token(serve.token_file, "[serve] token_file");
-  if (!out.address.loopback && out.token.empty())
+  if (!out.address.loopback && !out.knows_readers())
     throw UsageError{fmt::format(
         "[serve] address: {} can be reached by others, expected a loopback address, or [serve] "
-        "token_file beside it",
+        "token_file or client_ca_file beside it",
         serve.address)};
   return out;
 }
@@ -72,7 +72,8 @@ std::unique_ptr<Serving> open_serving(const Config& config) {
 Serving::Serving(const Config& config)
     : config_{config}, server_{http_settings(config.serve)}, view_{config} {
   const std::string& address = config.serve.address;
-  where_ = fmt::format("http://{}:{}/", address.substr(0, address.rfind(':')), server_.port());
+  where_ = fmt::format("{}://{}:{}/", config.serve.cert_file.empty() ? "http" : "https",
+                       address.substr(0, address.rfind(':')), server_.port());
   wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   if (wake_ < 0) throw RunError{"cannot serve: no file descriptor is left"};
   set_assets();

@@ -5,12 +5,14 @@ to those who speak no HTTP.
 
 Usage: http_test.py DAMPLINE
 """
+import http.client
 import json
 import pathlib
 import random
 import selectors
 import shutil
 import socket
+import ssl
 import subprocess
 import sys
 import tempfile
@@ -51,8 +53,8 @@ def ask_events(port):
     return s
 
 
-def ended(server):
-    live = json.loads(server.get("live.json")[2])
+def ended(server, **how):
+    live = json.loads(server.get("live.json", **how)[2])
     return live if live.get("live", {}).get("state") == "ended" else None
 
 
@@ -140,6 +142,101 @@ class Token(unittest.TestCase):
         done = subprocess.run([DAMPLINE, "replay", RECORD, "--serve", "0.0.0.0:0"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("token_file", done.stderr)
+
+
+class ClientCertificate(unittest.TestCase):
+    """Certificates as openssl makes them: an authority, a server, a reader, and those who are none."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(FOLDER.name) / "tls"
+        cls.folder.mkdir()
+        cls.make("authority", "basicConstraints=critical,CA:TRUE")
+        cls.make("stranger", "basicConstraints=critical,CA:TRUE")
+        cls.make("server", "subjectAltName=IP:127.0.0.1\nextendedKeyUsage=serverAuth", "authority")
+        cls.make("reader", "extendedKeyUsage=clientAuth", "authority")
+        cls.make("expired", "extendedKeyUsage=clientAuth", "authority", days="-1")
+        cls.make("foreign", "extendedKeyUsage=clientAuth", "stranger")
+        cls.config = cls.folder / "car.toml"  # its files lie beside it
+        cls.config.write_text('[serve]\ncert_file = "server.pem"\nkey_file = "server.key"\n'
+                              'client_ca_file = "authority.pem"\n')
+
+    @classmethod
+    def make(cls, name, extensions, by=None, days="30"):
+        path = cls.folder / name
+        run = lambda *words: subprocess.run(["openssl", *words], check=True, capture_output=True)
+        (cls.folder / "extensions").write_text(extensions + "\n")
+        run("req", "-new", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj", f"/CN={name}",
+            "-keyout", f"{path}.key", "-out", f"{path}.csr")
+        signer = ["-signkey", f"{path}.key"] if by is None else [
+            "-CA", cls.folder / f"{by}.pem", "-CAkey", cls.folder / f"{by}.key", "-CAcreateserial"]
+        run("x509", "-req", "-in", f"{path}.csr", "-days", days, "-extfile", cls.folder / "extensions",
+            "-out", f"{path}.pem", *signer)
+
+    def tls(self, who=None):
+        context = ssl.create_default_context(cafile=self.folder / "authority.pem")
+        if who:
+            context.load_cert_chain(self.folder / f"{who}.pem", self.folder / f"{who}.key")
+        return context
+
+    def answer(self, server, who=None, path="live.json", **headers):
+        """Status; 0: the server broke the connection."""
+        try:
+            return server.get(path, tls=self.tls(who), Host="truck.example", **headers)[0]
+        except (OSError, http.client.HTTPException):
+            return 0
+
+    def test_opens_another_address_to_its_readers_alone(self):
+        with Server(DAMPLINE, RECORD, "--speed", "0", "--config", self.config, address="0.0.0.0:0") as server:
+            self.assertTrue(server.url.startswith("https://"))
+            for path in ("", "live.json", "view.json", "metrics", "healthz"):
+                self.assertEqual(self.answer(server, "reader", path), 200, path)
+                for who in (None, "foreign", "expired", "server"):
+                    self.assertIn(self.answer(server, who, path), (0, 403), (who, path))
+            self.assertEqual(self.answer(server), 403)  # told why, where TLS itself lets one ask
+            with ssl.create_default_context(cafile=self.folder / "authority.pem").wrap_socket(
+                    socket.create_connection(("127.0.0.1", server.port)), server_hostname="127.0.0.1") as s:
+                s.sendall(b"GET /events HTTP/1.1\r\nHost: a\r\n\r\n")
+                self.assertIn(b" 403 ", s.recv(4096).split(b"\r\n")[0] + b" ")
+            with self.tls("reader").wrap_socket(socket.create_connection(("127.0.0.1", server.port)),
+                                                server_hostname="127.0.0.1") as s:
+                s.sendall(b"GET /events HTTP/1.1\r\nHost: a\r\n\r\n")
+                heard, s_end = b"", time.monotonic() + 20
+                while heard.count(b"event: now") < 3 and time.monotonic() < s_end:
+                    heard += s.recv(65536)
+                self.assertGreaterEqual(heard.count(b"event: now"), 3)
+            with socket.create_connection(("127.0.0.1", server.port), timeout=10) as s:  # no TLS
+                s.sendall(b"GET /live.json HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                self.assertNotIn(b"200 OK", s.recv(4096))
+            wait_for(lambda: ended(server, tls=self.tls("reader")))
+        self.assertEqual((server.code, server.error), (0, ""))
+
+    def test_and_a_token_are_both_asked_for_where_both_are_set(self):
+        (self.folder / "token").write_text("0123456789abcdef\n")
+        both = self.folder / "both.toml"
+        both.write_text(self.config.read_text() + 'token_file = "token"\n')
+        with Server(DAMPLINE, RECORD, "--speed", "0", "--config", both, address="0.0.0.0:0") as server:
+            good = {"Authorization": "Bearer 0123456789abcdef"}
+            self.assertEqual(self.answer(server, "reader"), 401)
+            self.assertEqual(self.answer(server, **good), 403)
+            self.assertEqual(self.answer(server, "reader", **good), 200)
+            wait_for(lambda: ended(server, tls=self.tls("reader"), **good))
+
+    def test_files_that_cannot_be_used_are_named(self):
+        wrong = self.folder / "wrong.toml"
+        for text, expected in (('cert_file = "server.pem"', "cert_file and key_file"),
+                               ('client_ca_file = "authority.pem"', "client_ca_file"),
+                               ('cert_file = "server.pem"\nkey_file = "reader.key"', "server.pem"),
+                               ('cert_file = "server.pem"\nkey_file = "nothing"', "nothing"),
+                               ('cert_file = "server.pem"\nkey_file = "server.key"', "client_ca_file"),
+                               ('cert_file = "server.pem"\nkey_file = "server.key"\nclient_ca_file = "extensions"',
+                                "extensions")):
+            wrong.write_text("[serve]\n" + text + "\n")
+            done = subprocess.run([DAMPLINE, "replay", RECORD, "--config", wrong, "--serve", "0.0.0.0:0"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, text)
+            self.assertIn("[serve]", done.stderr)
+            self.assertIn(expected, done.stderr)
 
 
 class Crowd(unittest.TestCase):

@@ -19,7 +19,7 @@ class Server:
         self.child = subprocess.Popen([dampline, "replay", record, "--serve", address, "--quiet", *options],
                                       stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
         line = self.child.stderr.readline()
-        found = re.search(r"serving (http://.*:(\d+)/)", line)
+        found = re.search(r"serving (https?://.*:(\d+)/)", line)
         if not found:
             raise RuntimeError(line)
         self.url, self.port = found.group(1).replace("0.0.0.0", "127.0.0.1"), int(found.group(2))
@@ -33,11 +33,11 @@ class Server:
         self.error = self.child.stderr.read()
         self.child.stderr.close()
 
-    def get(self, path, method="GET", **headers):
+    def get(self, path, method="GET", tls=None, **headers):
         """Status, headers, body."""
         request = urllib.request.Request(self.url + path, headers=headers, method=method)
         try:
-            with urllib.request.urlopen(request, timeout=20) as answer:
+            with urllib.request.urlopen(request, timeout=20, context=tls) as answer:
                 return answer.status, answer.headers, answer.read()
         except urllib.error.HTTPError as error:
             return error.code, error.headers, error.read()
