@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -23,6 +25,7 @@
 #include "app/run/provenance.hpp"
 #include "app/run/state.hpp"
 #include "app/run/tables.hpp"
+#include "app/serve/http.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "drivers/blackbox/source.hpp"
 #include "drivers/candump/source.hpp"
@@ -395,6 +398,58 @@ void read_gpio(Bytes bytes) {
   }
 }
 
+constexpr std::string_view kToken = "0123456789abcdef";
+
+/// %30 as 0, as an address may have it.
+std::string unescaped(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned value = 0;
+    const char* const digits = text.data() + i + 1;
+    const bool escaped = text[i] == '%' && i + 2 < text.size() &&
+                         std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2;
+    out += escaped ? static_cast<char>(value) : text[i];
+    if (escaped) i += 2;
+  }
+  return out;
+}
+
+/// Bytes of a reader of the page, as they come over a connection: requests, whole or not. The first
+/// byte: whether a token is asked for, and in how many parts they come.
+void read_http(Bytes bytes) {
+  const std::uint8_t choice = take_choice(bytes);
+  const std::string token{choice % 2U == 0 ? std::string_view{} : kToken};
+  app::HttpServer server{{app::parse_address("127.0.0.1:0", ""), token, {}}};
+  server.set("/live.json", "application/json", "secret\n");
+  server.stream_at("/events");
+  server.send("event: now\n\n", "event: now\n\n");
+  std::array<int, 2> ends{};
+  require(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) == 0);
+  server.take_connection(ends[0]);
+  const std::size_t part = 1 + bytes.size() / (1 + choice / 64U);
+  std::string heard;
+  std::array<char, 4096> answer{};
+  const auto turn = [&] {
+    server.turn(std::chrono::milliseconds{0}, ends[1]);
+    for (ssize_t n = 0; (n = ::recv(ends[1], answer.data(), answer.size(), 0)) > 0;)
+      heard.append(answer.data(), static_cast<std::size_t>(n));
+  };
+  for (std::size_t at = 0; at < bytes.size(); at += part) {
+    const Bytes now = bytes.subspan(at, std::min(part, bytes.size() - at));
+    static_cast<void>(::send(ends[1], now.data(), now.size(), MSG_NOSIGNAL));
+    turn();
+    turn();
+  }
+  ::shutdown(ends[1], SHUT_WR);
+  turn();
+  turn();
+  ::shutdown(ends[1], SHUT_RDWR);
+  turn();
+  ::close(ends[1]);
+  const bool knows = unescaped(text_of(bytes)).find(kToken) != std::string::npos;
+  require(token.empty() || knows || heard.find("secret") == std::string::npos);
+}
+
 constexpr std::array kReaders{Reader{"dbc", read_dbc},
                               Reader{"candump", read_candump},
                               Reader{"screen", read_recording},
@@ -416,7 +471,8 @@ constexpr std::array kReaders{Reader{"dbc", read_dbc},
                               Reader{"frames", read_frames},
                               Reader{"control", read_control},
                               Reader{"links", read_links},
-                              Reader{"gpio", read_gpio}};
+                              Reader{"gpio", read_gpio},
+                              Reader{"http", read_http}};
 
 }  // namespace
 
