@@ -16,7 +16,8 @@ libbenchmark-dev     the programs in bench/
 readonly nightly_packages="
 python3-pandas       takes the table that dampline.py makes of many runs
 octave               runs loadrun.m
-prometheus           promtool, which judges the metrics
+prometheus           promtool, which judges the metrics, and the server that scrapes them
+prometheus-node-exporter reads them from a file
 "
 readonly product=(firmware_core hal drivers sim_hw app tests/published/generate)  # the last writes the core's tables
 readonly logs=build/ci
