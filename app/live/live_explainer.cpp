@@ -3,6 +3,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -18,32 +19,48 @@ constexpr int kNice = 10;  // the acquisition and the writer come first
 
 }  // namespace
 
-LiveExplainer::LiveExplainer(const Config& config, ExplainRun& run)
-    : whole_{config},
-      config_{explainer_config(config)},
+LiveExplainer::LiveExplainer(const Config& config, ExplainRun& run, Pace pace)
+    : config_{config},
       run_{run},
+      pace_{pace},
       every_ticks_{std::llround(kEveryS * rate_hz())},
+      floor_{run.config().estimator},
       copy_{std::make_unique<effect::StoreCopy>()},
       statistics_{std::make_unique<Statistics>()},
       explainer_{std::make_unique<effect::Explainer>()} {
-  run.watch([this](const Sample& sample, const UpdateResult&) { take(sample); });
+  run.watch([this](const Sample& sample, const UpdateResult& result) { take(sample, result); });
 }
 
 LiveExplainer::~LiveExplainer() { stop(); }
 
-void LiveExplainer::take(const Sample& sample) noexcept {
+void LiveExplainer::take(const Sample& sample, const UpdateResult& result) noexcept {
+  if (result.has_motion) still_ = result.motion.still;
+  if (!still_) hand_on(sample);
+  take_sums(sample.tick);
+}
+
+void LiveExplainer::hand_on(const Sample& sample) noexcept {
+  while (!floor_.take(sample)) {
+    if (pace_ == Pace::kOfTheBus || stop_.load(std::memory_order_acquire)) return;
+    std::this_thread::sleep_for(kSamplePatience);
+  }
+}
+
+void LiveExplainer::take_sums(std::int64_t tick) noexcept {
   const effect::Diagnosis& sums = run_.core().effects();
   const Turn turn = turn_.load(std::memory_order_acquire);
-  if (turn == Turn::kWait && sample.tick >= next_tick_) {
-    next_tick_ = sample.tick + every_ticks_;
+  if (turn == Turn::kWait && tick >= next_tick_) {
+    next_tick_ = tick + every_ticks_;
     copy_->start();
     turn_.store(Turn::kCopy, std::memory_order_relaxed);
   } else if (turn == Turn::kCopy && copy_->step(sums.store())) {
     impulses_ = sums.impulses();
     grids_ = sums.grids();
+    copied_s_ = run_.time_s();
     turn_.store(Turn::kCircumstances, std::memory_order_relaxed);
   } else if (turn == Turn::kCircumstances) {
     circumstances_.faults = run_.core().faults();
+    guarded_ = guarded_noise(run_.core());
     run_.core().statistics(*statistics_);
     turn_.store(Turn::kJudge, std::memory_order_release);
   }
@@ -61,27 +78,53 @@ void LiveExplainer::stop() {
 void LiveExplainer::run() {
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));  // of this thread
   while (!stop_.load(std::memory_order_acquire)) {
+    floor_.follow();
     if (turn_.load(std::memory_order_acquire) == Turn::kJudge) {
       judge();
       turn_.store(Turn::kWait, std::memory_order_release);
     }
     std::this_thread::sleep_for(kSamplePatience);
   }
+  floor_.follow();
+}
+
+bool LiveExplainer::judge(const effect::GramStore& sums, const effect::ImpulseMeter& impulses,
+                          const effect::Grids& grids, Explained& out) {
+  while (true) {
+    effect::judge(sums, impulses, grids, explainer_config(config_, out), out.circumstances,
+                  *explainer_, out);
+    if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
+    floor_.hold_against(sums, guarded_, *explainer_, out);
+    const effect::Effect needless = needless_effect(out.explanation);
+    if (needless == effect::Effect::kUnknown) break;
+    out.needless[static_cast<std::size_t>(needless)] = true;
+  }
+  effect::name_nothing_impossible(out.explanation);
+  return true;
 }
 
 void LiveExplainer::judge() {
+  floor_.follow();                  // what the copy is made of has come by now
+  constexpr double kAskAnew = 2.0;  // when there are so many times the rows
   Explained out;
-  circumstances_ = effect::circumstances_of(circumstances_.faults,
-                                            find_parameter_drift(*statistics_, Estimator::kBlockS));
+  out.circumstances = effect::circumstances_of(
+      circumstances_.faults, find_parameter_drift(*statistics_, Estimator::kBlockS));
   TruckView view;
   view.first_tick = run_.first_tick();
-  view.faults = circumstances_.faults;
+  view.faults = out.circumstances.faults;
   out.identified.faults = faults_of(view, rate_hz());
-  if (circumstances_.drift.found) out.identified.faults.drift = finding_of(circumstances_.drift);
-  effect::judge(copy_->store(), impulses_, grids_, config_, circumstances_, *explainer_, out);
-  if (out.explanation.conclusion == effect::Conclusion::kNotReady) return;
+  if (out.circumstances.drift.found)
+    out.identified.faults.drift = finding_of(out.circumstances.drift);
+  if (copy_->store().rows() > kAskAnew * needless_rows_) {
+    needless_ = {};
+    needless_rows_ = copy_->store().rows();
+  }
+  out.needless = needless_;
+  if (!judge(copy_->store(), impulses_, grids_, out)) return;
+  needless_ = out.needless;
   const std::lock_guard<std::mutex> lock{mutex_};
   newest_ = std::move(out);
+  newest_s_ = copied_s_;
 }
 
 namespace {
@@ -100,21 +143,28 @@ void add(Explained found, RunResult& result) {
 
 }  // namespace
 
-void LiveExplainer::add_newest(RunResult& result) const {
+void LiveExplainer::add_newest(RunResult& result, double time_s) const {
   Explained found;
+  double age_s = 0.0;
   {
     const std::lock_guard<std::mutex> lock{mutex_};
     if (!newest_) return;
     found = *newest_;
+    age_s = std::max(time_s - newest_s_, 0.0);
   }
   add(std::move(found), result);
+  if (result.live) result.live->explanation_age_s = age_s;
 }
 
 void LiveExplainer::conclude(RunResult& result) {
   Explained found;
   found.identified = result;
   found.circumstances = run_.circumstances();
-  if (judge_sums(whole_, run_.core().effects(), *explainer_, found)) add(std::move(found), result);
+  guarded_ = guarded_noise(run_.core());
+  floor_.follow();
+  floor_.forget();
+  const effect::Diagnosis& sums = run_.core().effects();
+  if (judge(sums.store(), sums.impulses(), sums.grids(), found)) add(std::move(found), result);
 }
 
 }  // namespace dampline::app

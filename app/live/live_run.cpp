@@ -113,7 +113,9 @@ void LiveRun::publish_when_fresh() {
   if (!acquisition_->status().take() || !outlets_.publish) return;
   RunResult result = live_result(acquisition_->status().front(),
                                  surroundings(std::string{name_of(state_)}), config_);
-  explainer_.add_newest(result);
+  const TruckView& view = acquisition_->status().front().view;
+  explainer_.add_newest(result, static_cast<double>(view.newest_tick - view.first_tick) /
+                                    truck_rate_hz(config_.input));
   result.origin = origin_of(config_, parts_.inputs, result.origin.recorded);
   result.origin.written_ns = parts_.clock->realtime_ns();
   raise_alarms(result);

@@ -39,7 +39,7 @@ class Replay {
         serving_{open_serving(config)},
         feed_{open_feed(config, source, kind)},
         run_{config, feed_->signals()},
-        explainer_{config, run_},
+        explainer_{config, run_, LiveExplainer::Pace::kWaits},
         alarms_{config.alarm},
         progress_{options.show_progress} {
     if (!serving_) throw UsageError{"--serve: missing, expected HOST:PORT as in 127.0.0.1:9464"};
@@ -108,7 +108,8 @@ class Replay {
     if (status.any_sample) status.view = run_.view();
     status.rate = rate_of(*feed_, run_);
     RunResult result = result_so_far(status, config_, source_.path);
-    explainer_.add_newest(result);
+    if (!result.live) result.live.emplace();
+    explainer_.add_newest(result, run_.time_s());
     publish(result, "identifying");
   }
 

@@ -218,6 +218,7 @@ void list_members(Archive&& a, Of<LiveFigures> auto& f) {
   a("memory_locked", f.memory_locked);
   a("realtime_scheduled", f.realtime_scheduled);
   a("first_sample_s", f.first_sample_s);
+  a("explanation_age_s", f.explanation_age_s);
   a("silence_s", f.silence_s);
   a("recording", f.recording);
   a("recorded_bytes", f.recorded_bytes);

@@ -326,8 +326,9 @@ struct LiveFigures {
   std::uint64_t major_faults{0};
   bool memory_locked{false};
   bool realtime_scheduled{false};
-  std::optional<double> first_sample_s;  ///< from the start of the program to the first sample
-  double silence_s{0.0};                 ///< without a sample, until now
+  std::optional<double> explanation_age_s;  ///< of the record, since its sums were taken
+  std::optional<double> first_sample_s;     ///< from the start of the program to the first sample
+  double silence_s{0.0};                    ///< without a sample, until now
   bool recording{false};
   std::uint64_t recorded_bytes{0};
   std::uint64_t records_lost{0};

@@ -101,6 +101,9 @@ void write_state(const RunResult& result, Text& text) {
   text.single("record_seconds", "gauge", "Length of what was identified so far.",
               result.duration_s);
   text.single("silence_seconds", "gauge", "Without a sample until now.", live.silence_s);
+  if (live.explanation_age_s)
+    text.single("explanation_age_seconds", "gauge",
+                "Since the newest sums that say what is lacking.", *live.explanation_age_s);
   text.single("cycle_slips_total", "counter", "Samples late by more than one sampling period.",
               live.cycle_slips);
   text.begin("page_faults_total", "counter", "Of the acquisition, after its warm-up.");

@@ -176,6 +176,9 @@ class BasicIdentifier {
   [[nodiscard]] const FokkerPlanck& density() const noexcept { return density_; }
   [[nodiscard]] const PhaseView& phase() const noexcept { return phase_; }
   [[nodiscard]] const effect::Diagnosis& effects() const noexcept { return effects_; }
+  /// The effects' sums of all blocks that are closed, in the middle of a stream: not in one that
+  /// must keep up.
+  void gather_effects() noexcept requires(kParts.effects) { effects_.gather(); }
 
  private:
   static constexpr NoObserver kNobody{};

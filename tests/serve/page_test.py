@@ -69,6 +69,11 @@ class Page(unittest.TestCase):
             self.assertEqual([(p["name"], float(p["value"]), float(p["std"]), p["unit"]) for p in shown],
                              [(p["name"], p["value"], p["std"], p["unit"]) for p in live["parameters"]])
             self.assertEqual(self.browser.evaluate("document.querySelector('#answer').dataset.trust"), live["trust"])
+            told = live["explanation"]
+            self.assertEqual(self.browser.evaluate("document.querySelector('#explanation').dataset.verdict"),
+                             told["verdict"])
+            if told["left_over_floor"] is not None:
+                self.assertIn(f"left: {told['left_over_floor']:.3g} times", text_of(self.browser, "#explanation"))
             for key in ("frames", "frames_processed", "frames_missing"):
                 digits = "".join(c for c in text_of(self.browser, f"[data-count={key}]") if c.isdigit())
                 self.assertEqual(int(digits), live["counts"][key])

@@ -9,6 +9,7 @@
 #include "app/diagnosis/truck/law.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
+#include "app/diagnosis/truck/surrogates.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 
 namespace dampline::app {
@@ -24,23 +25,9 @@ EvidenceScale scale_of(const EstimatorConfig& core, const TruckPass& first) {
           core.sample_rate_hz, first.run->time_s()};
 }
 
-/// One of the declared law; one that has friction's memory, too, or else one with other noise.
-using Surrogates = std::array<std::unique_ptr<SurrogatePass>, 2>;
-
-Surrogates surrogates_of(const EstimatorConfig& core, const effect::SurrogateConfig& declared,
-                         const effect::Explanation& e) {
-  Surrogates out;
-  if (!is_physical(declared)) return out;
-  out[0] = std::make_unique<SurrogatePass>(core, declared, e.grids);
-  effect::SurrogateConfig second = with_memory(declared, e);
-  ++second.seed;
-  out[1] = std::make_unique<SurrogatePass>(core, second, e.grids);
-  return out;
-}
-
 /// The record again, with the surrogates.
 void read_again(const Config& config, const ExplainOptions& options, const EstimatorConfig& core,
-                const TruckPass& first, const Surrogates& surrogates, Explained& out) {
+                const TruckPass& first, Surrogates* surrogates, Explained& out) {
   EvidenceMeter meter{scale_of(core, first)};
   TruckPoints points{core.sample_rate_hz,
                      core.moving_mass_kg,
@@ -50,8 +37,7 @@ void read_again(const Config& config, const ExplainOptions& options, const Estim
   again.watch = [&](const Sample& sample, const UpdateResult& result,
                     const effect::Diagnosis& diagnosis) {
     points.take(sample, result, diagnosis);
-    for (const auto& surrogate : surrogates)
-      if (surrogate) surrogate->take(sample);
+    if (surrogates != nullptr) surrogates->take(sample);
   };
   const TruckPass pass = pass_of(config, options.source, again);
   Evidence& evidence = out.identified.evidence;
@@ -62,12 +48,6 @@ void read_again(const Config& config, const ExplainOptions& options, const Estim
   out.signature = meter.signature();
   out.convergence =
       convergence_of(out.explanation, pass.diagnosis().store(), out.identified.duration_s);
-}
-
-/// A law that no truck has, or one whose floor cannot be had, whatever it leaves.
-void explains_nothing(effect::Explanation& e) {
-  e.conclusion =
-      e.step_count > 0 ? effect::Conclusion::kPartlyExplained : effect::Conclusion::kUnexplained;
 }
 
 }  // namespace
@@ -83,27 +63,18 @@ void look_again(const Config& config, const ExplainOptions& options, const Truck
   if (!can_read_again(options.source.path)) return;
   EstimatorConfig core = estimator_config(config);
   core.screen = first.run->config().estimator.screen;
-  const effect::SurrogateConfig declared =
-      surrogate_config(core, out.explanation, noise_of_record(first, noise, core.screen.step_mps2));
-  const Surrogates surrogates = surrogates_of(core, declared, out.explanation);
-  read_again(config, options, core, first, surrogates, out);
-  if (!surrogates[0]) {
-    explains_nothing(out.explanation);
-    return;
-  }
+  const RecordNoise seen =
+      noise_of_record(guarded_noise(first.run->core()), noise, core.screen.step_mps2);
+  const auto surrogates = std::make_unique<Surrogates>();
+  surrogates->begin(core, surrogate_config(core, out.explanation, seen), out.explanation);
+  read_again(config, options, core, first, surrogates.get(), out);
+  surrogates->finish();
   const std::size_t steps = out.explanation.step_count;
-  const auto conclusion = out.explanation.conclusion;
-  const effect::Diagnosis* const second = &surrogates[1]->finish();
-  const bool remembers = surrogates[1]->remembers();
-  const bool judged = explainer.apply_floor(
-      {surrogates[0]->finish(), remembers ? nullptr : second, remembers ? second : nullptr},
-      out.identified.faults.impacts, out.explanation);
-  if (!judged && steps > 0) explains_nothing(out.explanation);
-  if (out.withheld || out.drifts) out.explanation.conclusion = conclusion;
+  surrogates->hold_against(explainer, 0.0, out);
   // A surrogate that shows the same effect has taken it back: what is left is the base's.
   if (out.explanation.step_count == steps) return;
   out.lateness = {};
-  read_again(config, options, core, first, {}, out);
+  read_again(config, options, core, first, nullptr, out);
 }
 
 namespace {
@@ -132,7 +103,7 @@ class CloserLook {
              const FrameNoise& noise, effect::Explainer& explainer)
       : config_{config}, options_{options}, core_{estimator_config(config)}, explainer_{explainer} {
     core_.screen = first.run->config().estimator.screen;
-    noise_ = noise_of_record(first, noise, core_.screen.step_mps2);
+    noise_ = noise_of_record(guarded_noise(first.run->core()), noise, core_.screen.step_mps2);
   }
 
   /// Explains with these grids and a channel set right; `left`: how late it still is.
@@ -162,8 +133,9 @@ class CloserLook {
     const effect::Candidate& skew = late_step(e)->chosen;
     Estimate out = explainer_.lateness(diagnosis, e.model, skew);
     if (surrogate == nullptr) return out;
+    surrogate->finish();
     const Estimate bias =
-        explainer_.lateness(surrogate->finish(), effect::remembering_part(e), skew);
+        explainer_.lateness(surrogate->diagnosis(), effect::remembering_part(e), skew);
     return {out.value - bias.value, std::hypot(out.std, bias.std)};
   }
 

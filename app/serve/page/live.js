@@ -212,7 +212,7 @@ function showAnswer(live) {
   byId("answer").dataset.trust = live.trust;
 }
 
-function showExplanation(found) {
+function showExplanation(found, age_s) {
   const box = byId("explanation");
   if (!found) return box.replaceChildren(make("p", "No judgement yet: it comes with the first minutes of motion.", {className: "note"}));
   const out = [make("p", {complete: "Nothing: the model explains what is measured.", explained: "What was missing is found:",
@@ -226,6 +226,11 @@ function showExplanation(found) {
         (s.parameters || []).map(p => `; ${words(p.name)} ${quantity(p.value, p.std, p.unit)}`).join("")));
     out.push(rows);
   }
+  const told = [`Its trust: ${kTrust[found.trust] || words(found.trust)}`];
+  if (isNumber(found.left_over_floor))
+    told.push(`left: ${Number(found.left_over_floor.toPrecision(3))} times what sensors and rounding alone leave`);
+  if (isNumber(age_s)) told.push(`of ${Math.round(age_s)} s ago`);
+  out.push(make("p", told.join("; ") + ".", {className: "note"}));
   box.replaceChildren(...out);
   box.dataset.verdict = found.verdict;
 }
@@ -293,7 +298,7 @@ function show(live, view) {
   byId("headline").textContent = live.headline;
   byId("warnings").replaceChildren(...live.warnings.map(w => make("p", w, {className: "warning"})));
   showAnswer(live);
-  showExplanation(live.explanation);
+  showExplanation(live.explanation, live.live && live.live.explanation_age_s);
   showFigures(live);
   showHappened(live, view);
   drawCurve(view.curve);

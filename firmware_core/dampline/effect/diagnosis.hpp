@@ -28,6 +28,9 @@ class Diagnosis {
   void update(const Sample& sample, const UpdateResult& result) noexcept;
   /// The end of a record: closes the open blocks.
   void finish() noexcept;
+  /// Does at once what is still to be done of the closed blocks and is spread over samples
+  /// otherwise; changes no sum.
+  void gather() noexcept { store_.finish(); }
 
   [[nodiscard]] const ImpulseMeter& impulses() const noexcept { return impulses_; }
   [[nodiscard]] const GramStore& store() const noexcept { return store_; }

@@ -449,10 +449,12 @@ double Explainer::left_of_surrogate(const Diagnosis& surrogate, const Model& mod
 
 bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
                             Explanation& e) noexcept {
+  const double share = surrogates.share;
   const auto mean_of = [&](const ScaleWeights& weights, double target) {
-    const double first = left_of_surrogate(surrogates.base, e.base_model, weights, target);
+    const double first = left_of_surrogate(surrogates.base, e.base_model, weights, share * target);
     if (surrogates.other_noise == nullptr || first < 0.0) return first;
-    const double second = left_of_surrogate(*surrogates.other_noise, e.base_model, weights, target);
+    const double second =
+        left_of_surrogate(*surrogates.other_noise, e.base_model, weights, share * target);
     return second < 0.0 ? second : 0.5 * (first + second);
   };
   const double base_floor = mean_of(e.base_weight, e.base_target);
@@ -461,9 +463,9 @@ bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
   if (!beats_surrogate(surrogates.base, e)) drop_steps(e);
   const Model remembering = remembering_part(e);
   const bool remembers = surrogates.remembering != nullptr && remembering.count > e.base_count;
-  const double floor =
-      remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, e.target)
-                : mean_of(e.weight, e.target);
+  const double floor = remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight,
+                                                     share * e.target)
+                                 : mean_of(e.weight, e.target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
   conclude(impacts, e);

@@ -60,6 +60,7 @@ class Explainer {
     /// The base law with the memory of friction that was found: the floor is what a model with both
     /// leaves of it.
     const Diagnosis* remembering{nullptr};
+    double share{1.0};  ///< of the record's rows that the surrogates have
   };
   /// What a complete model leaves, from the surrogate: a record of the base law simulated on the
   /// same input, with the sensors' noise and resolution, through the same Estimator and a Diagnosis

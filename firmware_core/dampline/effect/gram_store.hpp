@@ -97,6 +97,14 @@ class GramStore {
     return entries_.blocks_per_entry();
   }
 
+  /// In all entries and scales.
+  [[nodiscard]] double rows() const noexcept {
+    double out = 0.0;
+    for (std::size_t i = 0; i < count(); ++i)
+      for (const double rows : entry(i).rows) out += rows;
+    return out;
+  }
+
   /// For a copy that is made part by part: how often the entries have begun to change, whether they
   /// are changing now, and how many parts they have.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/truck/surrogates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dampline::app {
+namespace {
+
+constexpr double kOneKind = 3.0;      // of powers of noise
+constexpr double kNoiseDoubt = 1.25;  // of the guards' median, which bursts do not lift
+
+/// What the wheelsets do not share counts as their noise, and aliasing adds to it. Where sensors
+/// may be of one kind, the frame's noise, which is measured apart from its motion, is that of all.
+std::array<double, kChannels> noise_of(std::array<double, kChannels> seen_mps2,
+                                       const std::array<double, kChannels>& step_mps2) {
+  const auto rounding = [&](std::size_t c) { return step_mps2[c] * step_mps2[c] / 12.0; };
+  const double frame = seen_mps2[0] * seen_mps2[0] - rounding(0);
+  for (std::size_t c = 1; c < kChannels; ++c) {
+    const double own = seen_mps2[c] * seen_mps2[c] - rounding(c);
+    if (frame > 0.0 && own > frame && own < kOneKind * frame)
+      seen_mps2[c] = std::sqrt(frame + rounding(c));
+  }
+  return seen_mps2;
+}
+
+}  // namespace
+
+RecordNoise noise_of_record(const GuardedNoise& guarded, const FrameNoise& frame,
+                            const std::array<double, kChannels>& step_mps2) {
+  const auto of_sensor = [&](double seen_mps2, std::size_t c) {
+    const double added = guarded.bridged.noise_mps2[c];
+    return added > 0.0 ? std::sqrt(std::max(seen_mps2 * seen_mps2 - added * added, 0.0))
+                       : seen_mps2;
+  };
+  std::array<double, kChannels> seen{};
+  for (std::size_t c = 0; c < kChannels; ++c) seen[c] = of_sensor(guarded.seen_mps2[c], c);
+  const double whole = of_sensor(frame.noise_mps2(), 0);
+  if (seen[0] > 0.0 && whole > 0.0)
+    seen[0] = std::clamp(whole, seen[0] / kNoiseDoubt, kNoiseDoubt * seen[0]);
+  return {noise_of(seen, step_mps2), guarded.bridged.error_mps2};
+}
+
+effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effect::Explanation& e,
+                                         const RecordNoise& noise) {
+  effect::SurrogateConfig out;
+  out.sample_rate_hz = core.sample_rate_hz;
+  out.stiffness_per_s2 = e.final.theta[effect::ModelFit::kStiffness];
+  const double mass_kg = e.final_stiffness_npm.value / out.stiffness_per_s2;
+  out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
+  if (e.base_count > 0)
+    out.viscous_per_s = std::max(e.final.theta[effect::ModelFit::kFirstEffect], 0.0);
+  out.anti_alias_hz = core.anti_alias.corner_hz;
+  out.noise_mps2 = noise.sensors_mps2;
+  out.bridged_mps2 = noise.bridged_mps2;
+  out.step_mps2 = core.screen.step_mps2;
+  return out;
+}
+
+effect::SurrogateConfig with_memory(effect::SurrogateConfig out, const effect::Explanation& e) {
+  const double mass_kg = e.final_coulomb_n.value / out.coulomb_mps2;
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    if (!effect::has_memory(e.step[i].chosen.effect)) continue;
+    const auto& parameter = e.step[i].parameter;  // force and length
+    out.memory = {e.step[i].chosen.effect == effect::Effect::kBacklash,
+                  parameter[0].estimate.value / mass_kg, parameter[1].estimate.value};
+    out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
+    return out;
+  }
+  return out;
+}
+
+bool is_physical(const effect::SurrogateConfig& c) {
+  return c.stiffness_per_s2 > 0.0 && c.coulomb_mps2 > 0.0 && c.viscous_per_s >= 0.0;
+}
+
+namespace {
+
+/// A law that no truck has, or one whose floor cannot be had, whatever it leaves.
+void explains_nothing(effect::Explanation& e) {
+  e.conclusion =
+      e.step_count > 0 ? effect::Conclusion::kPartlyExplained : effect::Conclusion::kUnexplained;
+}
+
+}  // namespace
+
+void Surrogates::begin(const EstimatorConfig& core, const effect::SurrogateConfig& declared,
+                       const effect::Explanation& e) {
+  for (auto& pass : passes_) pass.reset();
+  if (!is_physical(declared)) return;
+  effect::SurrogateConfig second = with_memory(declared, e);
+  remembers_ = second.memory.force_mps2 > 0.0;
+  ++second.seed;
+  passes_[0].emplace(core, declared, e.grids);
+  passes_[1].emplace(core, second, e.grids);
+}
+
+void Surrogates::hold_against(effect::Explainer& explainer, double rows, Explained& out) const {
+  effect::Explanation& e = out.explanation;
+  if (!passes_[0]) return explains_nothing(e);
+  const std::size_t steps = e.step_count;
+  const auto conclusion = e.conclusion;
+  const effect::Diagnosis& first = passes_[0]->diagnosis();
+  const effect::Diagnosis* const second = &passes_[1]->diagnosis();
+  effect::Explainer::Surrogates surrogates{first, remembers_ ? nullptr : second,
+                                           remembers_ ? second : nullptr};
+  if (rows > 0.0) surrogates.share = first.store().rows() / rows;
+  const bool judged = explainer.apply_floor(surrogates, out.identified.faults.impacts, e);
+  if (!judged && steps > 0) explains_nothing(e);
+  if (out.withheld || out.drifts) e.conclusion = conclusion;
+}
+
+}  // namespace dampline::app
