@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <new>
 #include <string>
 #include <system_error>
 
 #include "app/error.hpp"
+#include "app/text/format.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::app {
@@ -22,8 +24,14 @@ inline int fail(const char* text, int code) {
   std::string lines = drivers::printable(text, true);
   for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; ++at)
     lines.insert(at + 1, "  ");
-  fmt::print(stderr, "dampline: error: {}\n", lines);
+  tell(fmt::format("dampline: error: {}\n", lines));
   return code;
+}
+
+/// A full disk, say. The reason is lost where an earlier write found it.
+inline std::string cannot_print() {
+  const std::string text = "standard output cannot be written";
+  return errno == 0 ? text : text + ": " + std::generic_category().message(errno);
 }
 
 /// As a program does that knows nothing of pipes, after everything was cleaned up: `... | head`.
@@ -40,16 +48,20 @@ inline int exit_code(const std::function<int()>& action) {
     // A full disk behind standard output is a failed run, not a success.
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return errno == EPIPE ? end_by_closed_pipe()
-                            : fail("standard output cannot be written", kRunFailed);
+      return errno == EPIPE ? end_by_closed_pipe() : fail(cannot_print().c_str(), kRunFailed);
     return code;
   } catch (const ClosedPipe&) {
     return end_by_closed_pipe();
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe) return end_by_closed_pipe();
+    if (error.code() == std::errc::resource_unavailable_try_again)
+      return fail((std::string{"no further thread can be started: "} + error.what()).c_str(),
+                  kRunFailed);
     return fail(error.what(), kRunFailed);
   } catch (const UsageError& error) {
     return fail(error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory", kRunFailed);
   } catch (const std::exception& error) {
     return fail(error.what(), kRunFailed);
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "app/run/disk.hpp"
 #include "app/text/format.hpp"
 #include "drivers/checksum/crc32c.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app::fleet {
 namespace {
@@ -39,7 +39,10 @@ std::vector<Found> find_states(const std::vector<std::string>& sources) {
   std::vector<Found> out;
   for (const std::string& source : sources) {
     std::error_code error;
-    if (!fs::is_directory(source, error)) {
+    const fs::file_status status = fs::status(source, error);
+    if (status.type() == fs::file_type::none)
+      throw RunError{fmt::format("{}: cannot be read: {}", source, error.message())};
+    if (!fs::is_directory(status)) {
       out.push_back({source, true});
     } else if (fs::exists(fs::path{source} / "run.toml", error)) {
       out.push_back({fs::path{source} / "state.dls", true});
@@ -80,14 +83,12 @@ Leaf leaf_of(const fs::path& file, std::function<std::string()> read, Statistics
 
 std::function<std::string()> file_reader(const fs::path& file) {
   return [file] {
-    std::ifstream stream{file, std::ios::binary};
-    std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
-    if (!stream.is_open() || stream.bad())
-      throw RunError{
-          fmt::format("{}: cannot be read; expected a state, a run directory of a truck, "
-                      "a database, or a directory of states",
-                      file.string())};
-    return bytes;
+    auto bytes = drivers::read_whole(file.string());
+    if (!bytes)
+      throw RunError{fmt::format(
+          "{}; expected a state, a run directory of a truck, a database, or a directory of states",
+          bytes.error_text())};
+    return std::move(bytes.value());
   };
 }
 

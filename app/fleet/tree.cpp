@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "app/beside.hpp"
+
 namespace dampline::app::fleet {
 
 void Tree::push(Node node, const std::string& origin) {
@@ -58,7 +60,7 @@ NextChunk chunks_by_threads(std::span<const Leaf> leaves, int jobs) {
   return [working, chunk = chunk_of(leaves.size()), jobs = static_cast<std::size_t>(jobs)] {
     while (!working->rest.empty() && working->ahead.size() < jobs) {
       const auto part = working->rest.first(std::min(chunk, working->rest.size()));
-      working->ahead.push_back(std::async(std::launch::async, merge_chunk, part));
+      working->ahead.push_back(beside(merge_chunk, part));
       working->rest = working->rest.subspan(part.size());
     }
     std::vector<Node> nodes = working->ahead.front().get();

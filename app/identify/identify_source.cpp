@@ -11,10 +11,12 @@
 #include <future>
 #include <memory>
 
+#include "app/beside.hpp"
 #include "app/error.hpp"
 #include "app/record/source_kind.hpp"
 #include "app/rig/identify.hpp"
 #include "app/rig/record.hpp"
+#include "app/text/format.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::app {
@@ -45,13 +47,12 @@ void Progress::show(std::optional<double> share, double time_s, const std::strin
                                 ? fmt::format("{:.0f} s of record, {:.0f} x real time  ", time_s,
                                               time_s / std::max(elapsed.count(), 1e-9))
                                 : std::string{};
-  fmt::print(stderr, "\r\033[K{}{}{}", percent, speed, drivers::printable(state));
-  std::fflush(stderr);
+  tell(fmt::format("\r\033[K{}{}{}", percent, speed, drivers::printable(state)));
   shown_ = true;
 }
 
 void Progress::clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) tell("\r\033[K");
   shown_ = false;
 }
 
@@ -111,8 +112,8 @@ Identified identify_source(const Config& config, const SourceOptions& source, So
                            bool show_progress) {
   // Beside the identification, so that a checksum costs no time; of a pipe after it.
   const bool is_file = std::filesystem::is_regular_file(source.path);
-  auto record = std::async(is_file ? std::launch::async : std::launch::deferred, describe_record,
-                           source.path);
+  auto record = is_file ? beside(describe_record, source.path)
+                        : std::async(std::launch::deferred, describe_record, source.path);
   Identified out = kind == SourceKind::kRigRows
                        ? identify_rig_file(config, source, show_progress)
                        : identify_truck(config, source, kind, show_progress);

@@ -35,6 +35,8 @@ constexpr std::array kRigColumns{Column::kTime, Column::kDeflection, Column::kFo
 void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none)
+    fail(path, "cannot be read: " + error.message());
   if (!std::filesystem::exists(status))
     fail(path,
          fmt::format("no such file and no such CAN interface ({}); a source is an interface, a "

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <system_error>
 #include <utility>
@@ -17,6 +15,7 @@
 #include "app/run/json.hpp"
 #include "app/run/state.hpp"
 #include "app/run/tables.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -37,13 +36,20 @@ bool is_run_file(const std::string& name) {
          name.starts_with(kPartial);
 }
 
+std::vector<std::string> names_in(const fs::path& folder, std::error_code& error) {
+  std::vector<std::string> names;
+  for (fs::directory_iterator at{folder, error}; !error && at != fs::directory_iterator{};
+       at.increment(error))
+    names.push_back(at->path().filename().string());
+  return names;
+}
+
 /// Nothing but what an interrupted run left behind, which is no run and is continued.
-bool only_remains(const fs::path& folder) {
-  return std::all_of(fs::directory_iterator{folder}, fs::directory_iterator{},
-                     [](const fs::directory_entry& entry) {
-                       const std::string name = entry.path().filename().string();
-                       return name == "blackbox" || (name != kMarker && is_run_file(name));
-                     });
+bool only_remains(const fs::path& folder, std::error_code& error) {
+  const std::vector<std::string> names = names_in(folder, error);
+  return !error && std::all_of(names.begin(), names.end(), [](const std::string& name) {
+    return name == "blackbox" || (name != kMarker && is_run_file(name));
+  });
 }
 
 /// A name that can be exchanged: no link, no ".".
@@ -80,9 +86,9 @@ void RunDirectory::check_target(bool replace) {
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status))
     throw UsageError{fmt::format("{}: is a file; --out names a directory", shown_.string())};
-  const bool empty = fs::is_empty(target_, error);
+  const bool is_free = only_remains(target_, error);
   if (error) fail_io(shown_, "read", error.value());
-  if (empty || only_remains(target_)) return;
+  if (is_free) return;
   if (!replace)
     throw UsageError{fmt::format("{}: holds something already; --force replaces an earlier run",
                                  shown_.string())};
@@ -158,15 +164,17 @@ void RunDirectory::commit() {
 /// One exchange. What lies in the target and is no file of a run, the black box above all, is in
 /// both directories before it; where a file system has no links, it follows after.
 void RunDirectory::change_names() {
-  std::vector<fs::path> kept;
-  for (const fs::directory_entry& entry : fs::directory_iterator{target_})
-    if (!is_run_file(entry.path().filename().string())) kept.push_back(entry.path().filename());
+  std::error_code error;
+  std::vector<std::string> kept = names_in(target_, error);
+  if (error) fail_io(shown_, "read", error.value());
+  std::erase_if(kept, is_run_file);
   std::error_code ignored;
-  for (const fs::path& name : kept) static_cast<void>(link_tree(target_ / name, staging_ / name));
+  for (const std::string& name : kept)
+    static_cast<void>(link_tree(target_ / name, staging_ / name));
   fs::permissions(staging_, fs::status(target_, ignored).permissions(), ignored);
   sync_directory(staging_);
-  exchange(target_, staging_);
-  for (const fs::path& name : kept)
+  exchange(target_.parent_path(), target_.filename().string(), staging_.filename().string());
+  for (const std::string& name : kept)
     if (!fs::exists(fs::symlink_status(target_ / name, ignored)))
       rename_file(staging_ / name, target_ / name);
 }
@@ -217,8 +225,9 @@ std::vector<fs::path> remove_old_runs(const fs::path& folder, const std::string&
   std::vector<fs::path> removed;
   for (auto run = runs.begin(); runs.size() > keep && run != runs.end(); run = runs.erase(run)) {
     std::error_code error;
-    const bool ours = fs::is_directory(fs::symlink_status(run->second, error)) &&
-                      (fs::exists(run->second / kMarker) || only_remains(run->second));
+    const bool ours =
+        fs::is_directory(fs::symlink_status(run->second, error)) &&
+        (fs::exists(run->second / kMarker, error) || only_remains(run->second, error));
     if (ours && fs::remove_all(run->second, error) > 0 && !error) removed.push_back(run->second);
   }
   return removed;
@@ -227,11 +236,9 @@ std::vector<fs::path> remove_old_runs(const fs::path& folder, const std::string&
 namespace {
 
 std::string read_text(const std::filesystem::path& file) {
-  std::ifstream stream{file, std::ios::binary};
-  std::string text{std::istreambuf_iterator<char>{stream}, {}};
-  if (!stream.is_open() || stream.bad())
-    throw RunError{fmt::format("{}: cannot be read", file.string())};
-  return text;
+  auto text = drivers::read_whole(file.string());
+  if (!text) throw RunError{text.error_text()};
+  return std::move(text.value());
 }
 
 /// An extra table, which a run need not have.

@@ -105,12 +105,20 @@ void write_file(const fs::path& file, std::string_view content) {
 std::string partial_name() { return std::string{kPartial} + unforeseen(); }
 
 fs::path make_partial(const fs::path& parent, const std::string& stem, Descriptor& lock) {
+  const Descriptor folder{::open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)};
+  if (folder.get() < 0) fail_io(parent, "write into it", errno);
   for (int attempt = 0;; ++attempt) {
-    fs::path made = parent / (stem + unforeseen());
-    if (::mkdir(made.c_str(), 0777) == 0) {
-      lock = open_directory(made);
+    const std::string name = stem + unforeseen();
+    if (::mkdirat(folder.get(), name.c_str(), 0777) == 0) {
+      lock = Descriptor{
+          ::openat(folder.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
+      if (lock.get() < 0) {
+        const int error = errno;
+        ::unlinkat(folder.get(), name.c_str(), AT_REMOVEDIR);
+        fail_io(parent / name, "open", error);
+      }
       static_cast<void>(::flock(lock.get(), LOCK_EX | LOCK_NB));
-      return made;
+      return parent / name;
     }
     if (errno != EEXIST || attempt == kAttempts) fail_io(parent, "write into it", errno);
   }
@@ -164,18 +172,23 @@ bool link_tree(const fs::path& from, const fs::path& to) {
   return false;
 }
 
-void exchange(const fs::path& first, const fs::path& second) {
-  if (::renameat2(AT_FDCWD, first.c_str(), AT_FDCWD, second.c_str(), RENAME_EXCHANGE) == 0) return;
-  if (errno != EINVAL && errno != ENOSYS) fail_io(first, "replace", errno);
-  fs::path aside = first;
-  aside += ".replaced";
-  if (::rename(first.c_str(), aside.c_str()) != 0) fail_io(first, "replace", errno);
-  if (::rename(second.c_str(), first.c_str()) != 0) {
+void exchange(const fs::path& parent, const std::string& first, const std::string& second) {
+  const Descriptor folder{::open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)};
+  if (folder.get() < 0) fail_io(parent, "open", errno);
+  const auto rename = [at = folder.get()](const std::string& from, const std::string& to,
+                                          unsigned how) {
+    return ::renameat2(at, from.c_str(), at, to.c_str(), how);
+  };
+  if (rename(first, second, RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) fail_io(parent / first, "replace", errno);
+  const std::string aside = first + ".replaced";
+  if (rename(first, aside, 0) != 0) fail_io(parent / first, "replace", errno);
+  if (rename(second, first, 0) != 0) {
     const int error = errno;
-    ::rename(aside.c_str(), first.c_str());
-    fail_io(first, "replace", error);
+    rename(aside, first, 0);
+    fail_io(parent / first, "replace", error);
   }
-  if (::rename(aside.c_str(), second.c_str()) != 0) fail_io(aside, "rename", errno);
+  if (rename(aside, second, 0) != 0) fail_io(parent / aside, "rename", errno);
 }
 
 bool same_mount(const fs::path& one, const fs::path& other) {

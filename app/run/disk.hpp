@@ -67,9 +67,10 @@ void remove_stale(const std::filesystem::path& parent, const std::string& stem) 
 /// False when the file system has none; nothing is left of it then.
 [[nodiscard]] bool link_tree(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Exchanges two directories in one step; where the file system cannot, in two, between which the
-/// first one has the name `first`.replaced. Throws IoError.
-void exchange(const std::filesystem::path& first, const std::filesystem::path& second);
+/// Exchanges two directories of one folder in one step; where the file system cannot, in two,
+/// between which the first one has the name `first`.replaced. Throws IoError.
+void exchange(const std::filesystem::path& parent, const std::string& first,
+              const std::string& second);
 
 /// Whether a rename leads from one directory to the other.
 [[nodiscard]] bool same_mount(const std::filesystem::path& one, const std::filesystem::path& other);

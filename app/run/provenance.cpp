@@ -12,7 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <ctime>
-#include <fstream>
+#include <span>
 #include <vector>
 
 #include "app/config/config.hpp"
@@ -20,6 +20,7 @@
 #include "app/run/commit.hpp"
 #include "app/text/format.hpp"
 #include "drivers/bytes/byte_stream.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -40,18 +41,14 @@ std::optional<int> digits(std::string_view text, std::size_t at, std::size_t cou
 
 InputFile describe_input(const std::filesystem::path& file, const std::string& role) {
   InputFile input{file.string(), role, 0, ""};
-  std::ifstream stream{file, std::ios::binary};
-  if (!stream) throw RunError{fmt::format("{}: cannot be read", input.name)};
   sha256_ctx context{};
   sha256_init(&context);
-  std::vector<char> buffer(std::size_t{1} << 18U);
-  while (stream) {
-    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    const auto count = static_cast<std::size_t>(stream.gcount());
-    sha256_update(&context, count, reinterpret_cast<const std::uint8_t*>(buffer.data()));
-    input.bytes += count;
-  }
-  if (stream.bad()) throw RunError{fmt::format("{}: error while reading", input.name)};
+  const auto bytes = drivers::read_parts(input.name, [&](std::span<const char> part) {
+    sha256_update(&context, part.size(), reinterpret_cast<const std::uint8_t*>(part.data()));
+    return true;
+  });
+  if (!bytes) throw RunError{bytes.error_text()};
+  input.bytes = bytes.value();
   std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
   sha256_digest(&context, digest.size(), digest.data());
   for (const std::uint8_t byte : digest) input.sha256 += fmt::format("{:02x}", byte);

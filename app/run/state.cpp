@@ -8,14 +8,13 @@
 #include <bit>
 #include <concepts>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <type_traits>
 
 #include "app/error.hpp"
 #include "dampline/estimate/merge.hpp"
 #include "drivers/checksum/crc32c.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -394,10 +393,9 @@ void merge_state(Statistics& into, const Statistics& from, const std::string& or
 }
 
 StateAbout load_state(const std::filesystem::path& file, Statistics& out) {
-  std::ifstream stream{file, std::ios::binary};
-  const std::string bytes{std::istreambuf_iterator<char>{stream}, {}};
-  if (!stream.is_open() || stream.bad()) fail(file.string(), "cannot be read");
-  return decode_state(bytes, file.string(), out);
+  const auto bytes = drivers::read_whole(file.string());
+  if (!bytes) throw RunError{bytes.error_text()};
+  return decode_state(bytes.value(), file.string(), out);
 }
 
 }  // namespace dampline::app

@@ -8,7 +8,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/error.hpp"
@@ -17,6 +16,7 @@
 #include "app/report/assets.hpp"
 #include "app/serve/assets.hpp"
 #include "app/serve/metrics.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {
@@ -65,7 +65,7 @@ class NoSignals {
 std::unique_ptr<Serving> open_serving(const Config& config) {
   if (config.serve.address.empty()) return nullptr;
   auto out = std::make_unique<Serving>(config);
-  fmt::print(stderr, "serving {}\n", out->where());
+  tell(fmt::format("serving {}\n", out->where()));
   return out;
 }
 

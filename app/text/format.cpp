@@ -129,8 +129,12 @@ std::string toml_string(std::string_view text) {
   return out + '"';
 }
 
+void tell(std::string_view text) noexcept {
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+}
+
 void warn(std::string_view text) {
-  fmt::print(stderr, "dampline: warning: {}\n", drivers::printable(text));
+  tell(fmt::format("dampline: warning: {}\n", drivers::printable(text)));
 }
 
 std::size_t edit_distance(std::string_view left, std::string_view right) {

@@ -46,7 +46,9 @@ struct ReadUnit {
 /// A TOML basic string: in quotes, with what must be escaped escaped.
 [[nodiscard]] std::string toml_string(std::string_view text);
 
-/// On the standard error, as a warning of the program.
+/// On the standard error. That it cannot be written is nobody's failure.
+void tell(std::string_view text) noexcept;
+/// Likewise, as a warning of the program.
 void warn(std::string_view text);
 
 /// Levenshtein distance: insertions, deletions and replacements of one character.

@@ -12,6 +12,7 @@
 
 #include "app/error.hpp"
 #include "app/record/frames.hpp"
+#include "app/text/format.hpp"
 #include "app/verbs/output.hpp"
 #include "app/verbs/verbs.hpp"
 #include "drivers/blackbox/source.hpp"
@@ -64,6 +65,19 @@ void write_events(drivers::BlackboxSource& source, std::optional<TextFile>& file
   }
 }
 
+/// Both, or none.
+void close(TextFile& log, std::optional<TextFile>& events) {
+  if (events) events->finish();
+  log.finish();
+  if (events) events->appear();
+  try {
+    log.appear();
+  } catch (const RunError&) {
+    if (events) events->withdraw();
+    throw;
+  }
+}
+
 void write_all(drivers::BlackboxSource& source, const ExportOptions& options) {
   TextFile log{options.out, options.force};
   std::optional<TextFile> events;
@@ -84,8 +98,7 @@ void write_all(drivers::BlackboxSource& source, const ExportOptions& options) {
     write_events(source, events);
     if (!count.ok()) break;
   }
-  log.close();
-  if (events) events->close();
+  close(log, events);
 }
 
 void print_summary(const drivers::BlackboxFindings& found, const ExportOptions& options) {
@@ -111,7 +124,7 @@ void print_summary(const drivers::BlackboxFindings& found, const ExportOptions& 
                    "times were moved to that end\n",
                    found.runs_moved);
   }
-  fmt::print(stderr, "{}", drivers::printable(text, true));
+  tell(drivers::printable(text, true));
 }
 
 int export_blackbox(const ExportOptions& options) {

@@ -12,13 +12,12 @@
 #include <utility>
 
 #include "app/error.hpp"
-#include "app/run/disk.hpp"
+#include "app/text/format.hpp"
 #include "sim_hw/writers.hpp"
 
 namespace dampline::app {
 
 TextFile::TextFile(std::string path, bool replace) : path_(std::move(path)), replace_(replace) {
-  constexpr int kMode = 0666;
   if (is_stdout()) {
     file_ = STDOUT_FILENO;
     return;
@@ -30,16 +29,28 @@ TextFile::TextFile(std::string path, bool replace) : path_(std::move(path)), rep
                       (!std::filesystem::is_regular_file(there) || path_.starts_with("/dev/"));
   if (!direct && !replace_ && std::filesystem::exists(there))
     throw UsageError(fmt::format("{}: exists already; --force replaces it", path_));
-  if (!direct) staged_ = (std::filesystem::path{path_}.parent_path() / partial_name()).string();
-  file_ =
-      direct ? ::open(path_.c_str(), O_WRONLY | O_CLOEXEC)
-             : ::open(staged_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
+  direct ? open_there() : open_beside();
   if (file_ < 0) fail("cannot be opened for writing");
+}
+
+void TextFile::open_there() { file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC); }
+
+/// Whoever exchanges the folder meanwhile moves no file of ours.
+void TextFile::open_beside() {
+  constexpr int kMode = 0666;
+  const std::filesystem::path parent = std::filesystem::path{path_}.parent_path();
+  folder_ =
+      Descriptor{::open(parent.empty() ? "." : parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)};
+  if (folder_.get() < 0) return;
+  const std::string name = partial_name();
+  file_ = ::openat(folder_.get(), name.c_str(),
+                   O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
+  if (file_ >= 0) staged_ = name;
 }
 
 TextFile::~TextFile() {
   if (file_ >= 0 && !is_stdout()) ::close(file_);
-  if (!staged_.empty()) ::unlink(staged_.c_str());
+  if (!staged_.empty()) ::unlinkat(folder_.get(), staged_.c_str(), 0);
 }
 
 void TextFile::fail(const char* action) const {
@@ -59,19 +70,30 @@ void TextFile::flush() {
   buffer_.clear();
 }
 
-void TextFile::close() {
+void TextFile::finish() {
   flush();
   const int file = std::exchange(file_, -1);
   if (is_stdout()) return;
   const bool synced = staged_.empty() || !replace_ || ::fsync(file) == 0;
   if (::close(file) != 0 || !synced) fail("cannot be written");
+}
+
+void TextFile::appear() {
   if (staged_.empty()) return;
   const unsigned how = replace_ ? 0 : RENAME_NOREPLACE;
-  int moved = ::renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, path_.c_str(), how);
+  const int folder = folder_.get();
+  const std::string name = std::filesystem::path{path_}.filename().string();
+  int moved = ::renameat2(folder, staged_.c_str(), folder, name.c_str(), how);
   if (moved != 0 && (errno == EINVAL || errno == ENOSYS))  // a file system without that choice
-    moved = ::rename(staged_.c_str(), path_.c_str());
+    moved = ::renameat(folder, staged_.c_str(), folder, name.c_str());
   if (moved != 0) fail("cannot be written");
   staged_.clear();
+  is_new_ = !replace_;
+}
+
+void TextFile::withdraw() const noexcept {
+  const std::string name = std::filesystem::path{path_}.filename().string();
+  if (is_new_) ::unlinkat(folder_.get(), name.c_str(), 0);
 }
 
 TruthFile::TruthFile(const std::string& path, const sim::SimulationConfig& config, bool replace) {
@@ -95,11 +117,11 @@ SimulateProgress::SimulateProgress(std::int64_t samples, bool quiet)
     : step_(samples / 100 + 1), shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 void SimulateProgress::at(std::int64_t sample) const {
-  if (shown_ && sample % step_ == 0) fmt::print(stderr, "\rsimulate: {} %", sample / step_);
+  if (shown_ && sample % step_ == 0) tell(fmt::format("\rsimulate: {} %", sample / step_));
 }
 
 void SimulateProgress::end() const {
-  if (shown_) fmt::print(stderr, "\r");
+  if (shown_) tell("\r");
 }
 
 }  // namespace dampline::app

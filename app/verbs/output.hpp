@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/run/disk.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
@@ -27,17 +28,29 @@ class TextFile {
   void tick() {
     if (buffer_.size() >= kFlushBytes) flush();
   }
-  /// Writes the rest. Throws RunError.
-  void close();
+  /// Writes the rest, and the file is there. Throws RunError.
+  void close() {
+    finish();
+    appear();
+  }
+  /// The two steps of close(), for several files that are there together or not at all.
+  void finish();
+  void appear();
+  /// After appear(): takes a new file away again.
+  void withdraw() const noexcept;
 
  private:
   static constexpr std::size_t kFlushBytes = std::size_t{1} << 20U;
+  void open_there();
+  void open_beside();
   void flush();
   [[noreturn]] void fail(const char* action) const;
   [[nodiscard]] bool is_stdout() const noexcept { return path_ == "-"; }
   std::string path_;
-  std::string staged_;  ///< empty: written where it is
+  Descriptor folder_;
+  std::string staged_;  ///< its name in the folder until it is whole; empty: written where it is
   bool replace_;
+  bool is_new_{false};  ///< there was none of its name
   int file_{-1};
   fmt::memory_buffer buffer_;
 };

@@ -3,8 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 
@@ -13,6 +11,7 @@
 #include "app/predict/truck.hpp"
 #include "app/verbs/verbs.hpp"
 #include "drivers/text/quote.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app {
 namespace {
@@ -39,11 +38,9 @@ law::Document load_law(const std::filesystem::path& run) {
   std::error_code error;
   if (std::filesystem::file_size(file, error) > kMost || error)
     throw RunError{fmt::format("{}: cannot be read as a law", file.string())};
-  std::ifstream stream{file, std::ios::binary};
-  const std::string text{std::istreambuf_iterator<char>{stream}, {}};
-  if (!stream.is_open() || stream.bad())
-    throw RunError{fmt::format("{}: cannot be read", file.string())};
-  return law::read_document(text, file.string());
+  const auto text = drivers::read_whole(file.string());
+  if (!text) throw RunError{text.error_text()};
+  return law::read_document(text.value(), file.string());
 }
 
 Prediction predict(const PredictFlags& flags) {

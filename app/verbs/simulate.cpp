@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "app/error.hpp"
+#include "app/text/format.hpp"
 #include "app/verbs/output.hpp"
 #include "app/verbs/simulate_send.hpp"
 #include "app/verbs/verbs.hpp"
@@ -124,9 +125,9 @@ int simulate(const SimulateOptions& options) {
   }
   const std::uint64_t lines = write_record(options, run, csv);
   if (!options.quiet) {
-    fmt::print(stderr, "simulate: {:.6g} s, {} {} -> {}\n",
-               static_cast<double>(run.samples) / sim::kSampleRateHz, lines,
-               csv ? "rows" : "frames", options.out == "-" ? "standard output" : options.out);
+    tell(fmt::format(
+        "simulate: {:.6g} s, {} {} -> {}\n", static_cast<double>(run.samples) / sim::kSampleRateHz,
+        lines, csv ? "rows" : "frames", options.out == "-" ? "standard output" : options.out));
   }
   return 0;
 }

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/text/format.hpp"
 #include "app/verbs/output.hpp"
 #include "drivers/os/system_clock.hpp"
 #include "drivers/socketcan/sender.hpp"
@@ -71,9 +71,9 @@ class Batches {
 
 void print_summary(const SimulateOptions& options, std::int64_t samples,
                    const drivers::SenderHealth& health) {
-  fmt::print(stderr, "simulate: {:.6g} s, {} frames sent, {} not sent -> {}\n",
-             static_cast<double>(samples) / sim::kSampleRateHz, health.sent, health.not_sent,
-             options.to);
+  tell(fmt::format("simulate: {:.6g} s, {} frames sent, {} not sent -> {}\n",
+                   static_cast<double>(samples) / sim::kSampleRateHz, health.sent, health.not_sent,
+                   options.to));
 }
 
 }  // namespace

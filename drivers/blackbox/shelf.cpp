@@ -61,7 +61,8 @@ std::vector<BlackboxEntry> list_blackbox(const std::filesystem::path& directory,
     std::error_code gone;
     if (!number || !at->is_regular_file(gone)) continue;
     const std::uintmax_t bytes = at->file_size(gone);
-    if (!gone) files.push_back({*number, bytes, at->path()});
+    if (gone == std::errc::no_such_file_or_directory) continue;
+    files.push_back({*number, gone ? 0 : bytes, at->path()});  // who reads it says what is wrong
   }
   std::ranges::sort(files, {}, &BlackboxEntry::number);
   return files;

@@ -22,6 +22,8 @@ Outcome<std::vector<std::string>> paths_of(const std::filesystem::path& path) {
     return Failure{code, fmt::format("{}: {}", path.string(), what)};
   };
   const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none)
+    return fail(Errc::kIo, "cannot be read: " + error.message());
   if (!std::filesystem::exists(status))
     return fail(Errc::kIo, "no such file or directory, expected a black box");
   if (std::filesystem::is_regular_file(status)) return std::vector{path.string()};

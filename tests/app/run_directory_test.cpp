@@ -10,6 +10,7 @@
 
 #include "app/error.hpp"
 #include "app/run/directory.hpp"
+#include "app/run/disk.hpp"
 #include "app/run/json.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/tables.hpp"
@@ -155,6 +156,54 @@ TEST(FreeRunName, NeverNamesWhatExists) {
   EXPECT_EQ(free_run_name(folder, "a").filename(), "a.run");
   fs::create_directories(folder / "a.run");
   EXPECT_EQ(free_run_name(folder, "a").filename(), "a.run.2");
+}
+
+TEST_F(RunDirectoryTest, KeepsTheNewestRunsOfAServiceAndNothingThatIsNone) {
+  for (const char* name :
+       {"car.run", "car.run.2", "car.run.3", "car.run.10", "car.run.4", "van.run"})
+    std::ofstream{(fs::create_directories(folder_ / name), folder_ / name / "run.toml")} << "a";
+  fs::create_directories(folder_ / "car.run.1x");
+  std::ofstream{(fs::create_directories(folder_ / "car.run.5"), folder_ / "car.run.5/thesis")}
+      << "a";
+  fs::create_directory_symlink(folder_ / "van.run", folder_ / "car.run.6");
+  const std::vector<fs::path> gone = remove_old_runs(folder_, "car", 2);
+  EXPECT_EQ(gone, (std::vector{folder_ / "car.run", folder_ / "car.run.2", folder_ / "car.run.3",
+                               folder_ / "car.run.4"}));
+  for (const char* kept :
+       {"car.run.10", "car.run.5", "car.run.6", "car.run.1x", "van.run/run.toml"})
+    EXPECT_TRUE(fs::exists(folder_ / kept)) << kept;
+  EXPECT_EQ(free_run_name(folder_, "car"), folder_ / "car.run.11");
+}
+
+TEST_F(RunDirectoryTest, RemovesWhatNobodyWritesAnyMoreAndFollowsNoLink) {
+  Descriptor lock;
+  const fs::path written = make_partial(folder_, ".partial-", lock);
+  fs::create_directories(folder_ / ".partial-0123456789abcdef/blackbox");
+  std::ofstream{folder_ / ".partial-left"} << "half";
+  fs::create_directories(folder_ / "elsewhere");
+  std::ofstream{folder_ / "elsewhere/precious"} << "a";
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / ".partial-link");
+  remove_stale(folder_, ".partial-");
+  EXPECT_TRUE(fs::exists(written)) << "it is locked";
+  EXPECT_FALSE(fs::exists(folder_ / ".partial-0123456789abcdef"));
+  EXPECT_FALSE(fs::exists(folder_ / ".partial-left"));
+  EXPECT_TRUE(fs::exists(folder_ / "elsewhere/precious"));
+}
+
+// Whoever waits for a name finds none that he could have laid a link under.
+TEST_F(RunDirectoryTest, TemporaryNamesCannotBeForeseenAndAreNewFilesOnly) {
+  EXPECT_NE(partial_name(), partial_name());
+  EXPECT_EQ(partial_name().size(), kPartial.size() + 16);
+  const Descriptor folder = open_directory(folder_);
+  std::ofstream{folder_ / "victim"} << "kept";
+  fs::create_symlink(folder_ / "victim", folder_ / "link");
+  EXPECT_THROW(write_new(folder.get(), "link", "new", folder_), IoError);
+  EXPECT_THROW(write_new(folder.get(), "victim", "new", folder_), IoError);
+  EXPECT_EQ(fs::file_size(folder_ / "victim"), 4U);
+  fs::rename(folder_, folder_.string() + ".moved");  // the opened folder is what counts
+  write_new(folder.get(), "new", "content", folder_);
+  EXPECT_TRUE(fs::exists(folder_.string() + ".moved/new"));
+  fs::rename(folder_.string() + ".moved", folder_);
 }
 
 TEST(ParametersJson, IsOneOfTheDesign) {

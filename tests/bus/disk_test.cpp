@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The live program over a disk that fills, goes read-only or loses the run directory: the run goes
 // on, says so, and its result is somewhere.
+#include "tests/bus/disk.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 
 #include <chrono>
 #include <csignal>
@@ -22,35 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::seconds;
 using testing::HasSubstr;
-
-/// A small file system of the test's own.
-class Disk {
- public:
-  explicit Disk(const fs::path& place) : place_{place} {
-    fs::create_directories(place_);
-    if (::mount("tmpfs", place_.c_str(), "tmpfs", 0, "size=4m") != 0)
-      throw std::runtime_error{"cannot mount a small file system"};
-  }
-  Disk(const Disk&) = delete;
-  Disk& operator=(const Disk&) = delete;
-  ~Disk() {
-    read_only(false);
-    ::umount2(place_.c_str(), MNT_DETACH);
-  }
-  void fill() const {
-    std::ofstream ballast{place_ / "ballast"};
-    const std::string block(4096, 'x');
-    while (ballast << block << std::flush) continue;
-  }
-  void empty() const { fs::remove(place_ / "ballast"); }
-  void read_only(bool on) const {
-    const unsigned long access = on ? static_cast<unsigned long>(MS_RDONLY) : 0UL;
-    ::mount("tmpfs", place_.c_str(), "tmpfs", MS_REMOUNT | access, "size=4m");
-  }
-
- private:
-  fs::path place_;
-};
 
 class TimeTravelDisk : public testing::Test {
  protected:

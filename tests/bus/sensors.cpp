@@ -12,8 +12,9 @@ Sensors::Sensors(RawSender& bus) : bus_{bus} {}
 
 CanFrame Sensors::frame(std::size_t channel) const noexcept {
   // Any motion will do; what counts is that every frame differs from its neighbours.
-  const auto accel =
-      static_cast<std::uint32_t>((instant_ * 37 + 11 * static_cast<int>(channel)) % 400);
+  const std::int64_t code =
+      motion ? codes_[channel] : (instant_ * 37 + 11 * static_cast<int>(channel)) % 400;
+  const auto accel = static_cast<std::uint32_t>(code) & 0xFFFU;
   const auto counter = static_cast<std::uint32_t>(counter_[channel]) & 0xFFFU;
   const std::uint32_t word = accel | counter << 12U;
   return {.id = static_cast<std::uint32_t>(0x310 + channel),
@@ -24,6 +25,7 @@ CanFrame Sensors::frame(std::size_t channel) const noexcept {
 
 void Sensors::send_instant() {
   std::vector<CanFrame> frames;
+  if (motion) codes_ = motion();
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (instant_ < off_until_[c]) continue;
     const CanFrame made = frame(c);

@@ -22,6 +22,8 @@ class Sensors {
   /// What becomes of a frame on its way; by default it arrives. Any number of frames may come of
   /// it.
   std::function<std::vector<CanFrame>(std::size_t channel, const CanFrame& frame)> fate;
+  /// The codes of the next instant; without it any that change.
+  std::function<std::array<std::int16_t, kChannels>()> motion;
   /// Sends at the pace of real sensors, one instant after the other.
   void run(std::chrono::duration<double> time);
   /// So many instants at once, and without a pause.
@@ -42,6 +44,7 @@ class Sensors {
   std::chrono::steady_clock::time_point due_{};
   std::array<std::int64_t, kChannels> counter_{1000, 2000, 3000};
   std::array<std::int64_t, kChannels> off_until_{};
+  std::array<std::int16_t, kChannels> codes_{};
   std::uint64_t made_{0};
   std::uint64_t refused_{0};
 };

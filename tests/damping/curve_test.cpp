@@ -85,6 +85,18 @@ TEST(Curve, FindsABrokenLine) {
   }
 }
 
+TEST(Curve, StatesTheScatterOfItsJumpAtZero) {
+  double sum_squares = 0.0;
+  constexpr int kSeeds = 8;
+  for (int seed = 20; seed < 20 + kSeeds; ++seed) {
+    const Snapshot s = summary_of(*statistics_of({}, 14e-3, static_cast<std::uint64_t>(seed)));
+    const double off = (s.curve_force_at_zero_n - 0.2 * kMassKg) / s.curve_std_at_zero_n;
+    sum_squares += off * off;
+    EXPECT_LT(s.curve_std_at_zero_n, 0.1 * s.curve_force_at_zero_n);
+  }
+  EXPECT_LT(std::sqrt(sum_squares / kSeeds), 2.5);
+}
+
 TEST(Curve, IsFlatForPureFriction) {
   const Snapshot s = summary_of(*statistics_of({}, 14e-3, 2));
   for (const CurvePoint& p : s.curve) {

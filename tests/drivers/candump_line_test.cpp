@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,16 @@ TEST(CandumpLine, ReadsCanFd) {
   EXPECT_NE(parse("(1.000000) can0 123##0" + std::string(18, 'F')).expected,
             "");  // 9 bytes: no such length
   EXPECT_NE(parse("(1.000000) can0 123##").expected, "");
+}
+
+TEST(CandumpLine, TakesTheSixteenLengthsOfCanFdAndNoOther) {
+  const std::vector<std::size_t> allowed{0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  for (std::size_t length = 0; length <= 66; ++length) {
+    const Parsed line = parse("(1.000000) can0 123##0" + std::string(2 * length, 'F'));
+    const bool good = std::find(allowed.begin(), allowed.end(), length) != allowed.end();
+    EXPECT_EQ(line.expected.empty(), good) << length;
+    if (good) EXPECT_EQ(line.frame.length, length);
+  }
 }
 
 TEST(CandumpLine, ReadsWhatCanUtilsAllows) {

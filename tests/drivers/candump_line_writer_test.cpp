@@ -55,6 +55,18 @@ TEST(CandumpWriter, WritesTheOtherKindsOfFrames) {
   EXPECT_EQ(line_of(fd, "can0"), "(0000000000.000000) can0 123##5\n");
 }
 
+TEST(CandumpWriter, WritesNoMoreThanAFrameHolds) {
+  CanFrame classic = frame_of(0, 0x123, std::vector<std::uint8_t>(12, 0xab));
+  EXPECT_EQ(line_of(classic, "can0"), "(0000000000.000000) can0 123#ABABABABABABABAB\n");
+  classic.remote = true;
+  EXPECT_EQ(line_of(classic, "can0"), "(0000000000.000000) can0 123#R\n");
+  CanFrame fd = frame_of(0, 0x123, std::vector<std::uint8_t>(64, 0xab));
+  fd.fd = true;
+  fd.length = 65;
+  EXPECT_EQ(line_of(fd, "can0").size(),
+            std::string{"(0000000000.000000) can0 123##0\n"}.size() + 128);
+}
+
 TEST(CandumpWriter, AlignsNamesAsCandumpDoesWithSeveralInterfaces) {
   EXPECT_EQ(line_of(frame_of(0, 1, {}), "can0", 6), "(0000000000.000000)   can0 001#\n");
   EXPECT_EQ(line_of(frame_of(0, 1, {}), "vcan10", 6), "(0000000000.000000) vcan10 001#\n");

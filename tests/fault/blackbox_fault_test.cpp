@@ -214,6 +214,18 @@ TEST(BlackboxFault, AFullDiskStopsRecordingWhichGoesOnByItself) {
   EXPECT_EQ(content.of(EventKind::kRecordingStopped)[0].value, ENOSPC);
 }
 
+TEST(BlackboxFault, WhatFailedBeforeTheFirstTickIsTriedAgainAtIt) {
+  const BoxFolder folder;
+  const auto writer = test::open_box(test::box_config(folder.path()));
+  {
+    const ArmedFault fault{{Call::kOpen, 1, ENOSPC, true}};
+    writer->write(numbered_frame(0));
+    EXPECT_FALSE(writer->health().recording);
+  }
+  writer->tick(1);
+  EXPECT_TRUE(writer->health().recording);
+}
+
 TEST(BlackboxFault, AReadThatFailsIsSaidAndNotTakenForTheEnd) {
   const BoxFolder folder;
   test::write_box(test::box_config(folder.path()), 0, 20000);

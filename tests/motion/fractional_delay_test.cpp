@@ -42,6 +42,26 @@ TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
   }
 }
 
+// What a single sample becomes is the filter itself.
+TEST(FractionalDelay, IsTheSincWithBlackmansWeights) {
+  constexpr double kLate = 0.4;  // samples
+  constexpr int kHalf = FractionalDelay::kHalf;
+  const auto tap = [](int i) {
+    const double x = i - kLate;
+    return std::sin(std::numbers::pi * x) / (std::numbers::pi * x) * blackman(x / (kHalf + 1));
+  };
+  double sum = 0.0;
+  for (int i = -kHalf; i <= kHalf; ++i) sum += tap(i);
+  FractionalDelay alignment{{2, kLate / kTruckRateHz}, kTruckRateHz};
+  constexpr std::int64_t kPulse = 100;
+  for (std::int64_t tick = 0; tick < 200; ++tick) {
+    const auto out = alignment.next({.tick = tick, .accel_mps2 = {0, 0, tick == kPulse ? 1.0 : 0}});
+    if (!out) continue;
+    const auto away = static_cast<int>(kPulse - out->tick);
+    EXPECT_NEAR(out->accel_mps2[2], std::abs(away) <= kHalf ? tap(away) / sum : 0.0, 1e-12) << away;
+  }
+}
+
 TEST(FractionalDelay, StartsAnewAfterAGapAndPassesOnWhatIsNoNumber) {
   FractionalDelay alignment{{0, 0.001}, kTruckRateHz};
   for (std::int64_t tick = 0; tick < 100; ++tick)

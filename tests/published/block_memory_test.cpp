@@ -70,6 +70,35 @@ TEST(BlockMemory, WithInfiniteMemoryIsTheBatch) {
   EXPECT_NEAR(memory.estimate().value().residual_rms, 0.1, 0.01);
 }
 
+// Efron and Stein 1981, by fits that lack one block each.
+TEST(BlockMemory, StatesTheDeviationOfTheJackknife) {
+  constexpr int kBlocks = 8;
+  std::mt19937_64 random{12};
+  BlockMemory<kColumns, kBlocks> memory;
+  std::vector<Stored> blocks;
+  for (int b = 0; b < kBlocks; ++b) {
+    blocks.push_back(random_block(random, 40, 3.0));
+    memory.add(factor_of(blocks.back()), 40.0);
+  }
+  std::vector<Eigen::Vector3d> without;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t left = 0; left < blocks.size(); ++left) {
+    std::vector<double> weight(blocks.size(), 1.0);
+    weight[left] = 0.0;
+    without.push_back(batch(blocks, weight));
+    mean += without.back() / kBlocks;
+  }
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& theta : without) squares += (theta - mean).cwiseAbs2();
+  const auto estimate = memory.estimate();
+  ASSERT_TRUE(estimate.ok());
+  for (int i = 0; i < 3; ++i) {
+    const double jackknife = std::sqrt(squares[i] * (kBlocks - 1) / kBlocks);
+    EXPECT_NEAR(estimate.value().std[static_cast<std::size_t>(i)] / jackknife,
+                short_record_factor(kBlocks), 0.01);
+  }
+}
+
 TEST(BlockMemory, WithAWindowIsTheBatchOfTheNewestBlocks) {
   std::mt19937_64 random{2};
   BlockMemory<kColumns, 8> memory{{.memory = Memory::kWindow, .memory_blocks = 6.0}};
