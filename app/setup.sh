@@ -31,6 +31,7 @@ valgrind             counts instructions per sample
 systemd              systemd-analyze, which rates the service's sandbox
 mandoc               checks the man page
 python3-jsonschema   holds the JSON files of runs against their schema
+locales              a language that writes a decimal comma
 python3-numpy        reads runs by dampline.py, and writes arrays
 dpkg-dev             finds what the Debian package depends on
 file                 tells programs from other files for it

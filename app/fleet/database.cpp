@@ -4,16 +4,17 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <array>
 #include <bit>
-#include <fstream>
 #include <mutex>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "app/error.hpp"
 #include "app/fleet/schema.hpp"
 #include "app/run/trust.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app::fleet {
 namespace {
@@ -120,11 +121,12 @@ void set_segment(const Statement& statement, const Segment& segment) {
 
 bool is_database(const fs::path& file) {
   constexpr std::string_view kMagic = "SQLite format 3";
-  std::array<char, kMagic.size()> head{};
-  std::ifstream stream{file, std::ios::binary};
-  stream.read(head.data(), head.size());
-  return stream.gcount() == static_cast<std::streamsize>(kMagic.size()) &&
-         std::string_view{head.data(), head.size()} == kMagic;
+  std::string head;
+  const auto read = drivers::read_parts(file.string(), [&](std::span<const char> part) {
+    head.append(part.data(), part.size());
+    return head.size() < kMagic.size();
+  });
+  return read.ok() && head.starts_with(kMagic);
 }
 
 Database::Database(fs::path file, Access access)

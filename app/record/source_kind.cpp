@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "app/error.hpp"
 #include "drivers/blackbox/shelf.hpp"
@@ -55,7 +57,12 @@ void check_exists(const std::string& path) {
 /// A file of that name goes first: it can be moved away, an interface cannot.
 bool is_interface(const std::string& path) {
   std::error_code error;
-  return !std::filesystem::exists(path, error) && ::if_nametoindex(path.c_str()) != 0;
+  if (std::filesystem::exists(path, error)) return false;
+  if (::if_nametoindex(path.c_str()) != 0) return true;
+  if (errno != ENODEV && errno != ENXIO)
+    fail(path, fmt::format("is no file, and the network interfaces cannot be read: {}",
+                           std::generic_category().message(errno)));
+  return false;
 }
 
 /// Text or bytes of a kind that is no record.

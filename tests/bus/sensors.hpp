@@ -24,7 +24,9 @@ class Sensors {
   std::function<std::vector<CanFrame>(std::size_t channel, const CanFrame& frame)> fate;
   /// The codes of the next instant; without it any that change.
   std::function<std::array<std::int16_t, kChannels>()> motion;
-  /// Sends at the pace of real sensors, one instant after the other.
+  /// Instants that go out together: one wake-up costs more than many frames.
+  std::int64_t batch{1};
+  /// Sends at the pace of real sensors.
   void run(std::chrono::duration<double> time);
   /// So many instants at once, and without a pause.
   void burst(std::int64_t instants);

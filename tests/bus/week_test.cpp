@@ -40,7 +40,7 @@ class TimeTravelWeek : public testing::Test {
     std::ofstream{folder_ / "car.toml"}
         << "[blackbox]\nrotate_mib = 4\nkeep_mib = 24\nreserve_free_mib = 0\n";
     sensors_.motion = [this] { return simulation_.next().counts; };
-    sensors_.fate = {};
+    sensors_.batch = 10;
   }
 
   [[nodiscard]] std::string run_name() const { return "car.run." + std::to_string(lives_); }
@@ -49,7 +49,7 @@ class TimeTravelWeek : public testing::Test {
   void begin_life() {
     ++lives_;
     made_before_ = sensors_.made();
-    extra_ = 0;
+    doubled_ = off_ = unsure_ = 0;
     happened_.clear();
     live_.emplace(folder_, bus_.name(), disk_.path() / run_name(),
                   Words{"--config", folder_ / "car.toml"});
@@ -80,11 +80,13 @@ class TimeTravelWeek : public testing::Test {
     ASSERT_EQ(::clock_settime(CLOCK_REALTIME, &now), 0);
     drive(2.0);
   }
-  // What the node did not make while it was off is missing from its sequence all the same.
+  // What the node did not make while it was off may be taken for lost: no counter tells, and where
+  // it goes on is known by the time of its frames, which come ten at once.
   void node_restarts() {
     const auto instants = static_cast<std::int64_t>(between(3.0, 900.0));
     sensors_.restart_node(random_() % kChannels, instants);
-    extra_ += static_cast<std::uint64_t>(instants);
+    off_ += static_cast<std::uint64_t>(instants);
+    unsure_ += 50;
     drive(static_cast<double>(instants) / Sensors::kRateHz + 2.0);
   }
   void frames_go_astray() {
@@ -92,7 +94,7 @@ class TimeTravelWeek : public testing::Test {
     sensors_.fate = [&](std::size_t /*channel*/, const CanFrame& frame) -> std::vector<CanFrame> {
       if (happens(random_)) return {};
       if (!happens(random_)) return {frame};
-      ++extra_;
+      ++doubled_;
       return {frame, frame};
     };
     drive(between(1.0, 20.0));
@@ -120,11 +122,12 @@ class TimeTravelWeek : public testing::Test {
     look_at_memory();
     const nlohmann::json counts = live_->stop().at("counts");
     const auto count = [&](const char* name) { return counts.at(name).get<std::uint64_t>(); };
-    const std::uint64_t made = sensors_.made() - made_before_ + extra_;
+    const std::uint64_t made = sensors_.made() - made_before_ + doubled_;
     EXPECT_EQ(count("frames_sent"), count("frames_processed") + count("frames_dropped") +
                                         count("frames_missing") + count("frames_excluded"))
         << counts.dump(1);
-    EXPECT_EQ(count("frames_sent"), made) << "life " << lives_ << ":" << happened_;
+    EXPECT_GE(count("frames_sent") + unsure_, made) << "life " << lives_ << ":" << happened_;
+    EXPECT_LE(count("frames_sent"), made + off_ + unsure_) << "life " << lives_ << ":" << happened_;
     for (const char* name :
          {"frames_processed", "frames_dropped", "frames_missing", "frames_excluded"})
       sum_[name] += count(name);
@@ -157,7 +160,9 @@ class TimeTravelWeek : public testing::Test {
   std::optional<LiveProgram> live_;
   std::map<std::string, std::uint64_t> sum_;
   std::uint64_t made_before_{0};
-  std::uint64_t extra_{0};
+  std::uint64_t doubled_{0};
+  std::uint64_t off_{0};
+  std::uint64_t unsure_{0};
   std::uint64_t most_kib_{0};
   std::uint64_t locked_kib_{0};
   std::string happened_;  ///< in this life
