@@ -54,6 +54,8 @@ mosquitto            a broker
 mosquitto-clients    reads what it was told
 openssl              makes certificates
 sqlite3              reads the database of a fleet
+libpq-dev            keeps them in PostgreSQL, an optional part of the program
+postgresql-15        that server
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

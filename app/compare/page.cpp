@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/compare/compare.hpp"
+#include "app/compare/series.hpp"
 #include "app/report/assets.hpp"
 #include "app/report/html.hpp"
 #include "app/report/plots.hpp"
@@ -23,10 +24,8 @@ namespace dampline::app::compare {
 namespace {
 
 using svg::Ink;
-using svg::Point;
 
 constexpr std::array kInks{Ink::kBlue, Ink::kOrange, Ink::kGreen, Ink::kPink, Ink::kGrey};
-constexpr double kBandStds = 2.0;
 constexpr std::int64_t kDayNs = 86'400'000'000'000;
 
 /// Where each run stands on the horizontal axis.
@@ -58,11 +57,6 @@ Places places_of(const std::vector<Run>& runs) {
 
 using Pick = std::optional<Parameter> (*)(const RunResult&);
 
-/// What one truck's runs have, in the order of the axis.
-struct Series {
-  std::vector<std::pair<double, Parameter>> points;
-};
-
 std::map<std::string, Series> series_of(const std::vector<Run>& runs, const Places& places,
                                         Pick pick) {
   std::map<std::string, Series> out;
@@ -77,26 +71,6 @@ std::map<std::string, Series> series_of(const std::vector<Run>& runs, const Plac
     std::sort(series.points.begin(), series.points.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
   return out;
-}
-
-/// Band, bars and dots; `factor` to the axis's unit.
-void add_series(const Series& series, double factor, Ink ink, const std::string& name,
-                svg::Panel& panel) {
-  std::vector<Point> middle;
-  std::vector<Point> lower;
-  std::vector<Point> upper;
-  std::vector<Point> bars;
-  for (const auto& [x, p] : series.points) {
-    const double half = kBandStds * p.std;
-    middle.push_back({x, factor * p.value});
-    lower.push_back({x, factor * (p.value - half)});
-    upper.push_back({x, factor * (p.value + half)});
-    bars.insert(bars.end(), {lower.back(), upper.back(), svg::kBreak});
-  }
-  if (middle.size() > 1) panel.band(lower, upper, ink);
-  panel.line(std::move(bars), {ink, 1.5});
-  if (middle.size() > 1) panel.line(middle, {ink, 1.0, true});
-  panel.dots(std::move(middle), ink, 4.0, name);
 }
 
 PlotUnit unit_of(const std::map<std::string, Series>& all) {

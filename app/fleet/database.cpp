@@ -2,199 +2,276 @@
 #include "app/fleet/database.hpp"
 
 #include <fmt/format.h>
-#include <sqlite3.h>
 
+#include <array>
 #include <bit>
-#include <mutex>
-#include <span>
-#include <string>
+#include <cmath>
+#include <fstream>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "app/error.hpp"
 #include "app/fleet/schema.hpp"
+#include "app/fleet/trend.hpp"
+#include "app/run/provenance.hpp"
 #include "app/run/trust.hpp"
-#include "drivers/text/whole_file.hpp"
+#include "drivers/text/quote.hpp"
 
 namespace dampline::app::fleet {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Finalize {
-  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-};
-using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
+using store::Query;
 
 // As `order` of leaves.cpp has it: what is refused here a merge would leave out.
 constexpr const char* kPut = R"sql(
-insert into state values (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18)
+insert into state (vehicle, truck, start_ns, record, seq, end_ns, load, moving_mass_kg, basis,
+  rate_hz, coulomb_n, coulomb_std_n, stiffness_npm, stiffness_std_npm, trust, light, checksum,
+  hours, usable, body)
+values ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20)
 on conflict (vehicle, truck, start_ns, record) do update set
   seq = excluded.seq, end_ns = excluded.end_ns, load = excluded.load,
   moving_mass_kg = excluded.moving_mass_kg, basis = excluded.basis, rate_hz = excluded.rate_hz,
   coulomb_n = excluded.coulomb_n, coulomb_std_n = excluded.coulomb_std_n,
   stiffness_npm = excluded.stiffness_npm, stiffness_std_npm = excluded.stiffness_std_npm,
-  trust = excluded.trust, light = excluded.light, checksum = excluded.checksum, body = excluded.body
-where (-state.seq, state.light, state.checksum) > (-excluded.seq, excluded.light, excluded.checksum)
+  trust = excluded.trust, light = excluded.light, checksum = excluded.checksum,
+  hours = excluded.hours, usable = excluded.usable, body = excluded.body
+where state.seq < excluded.seq or (state.seq = excluded.seq and
+  (state.light > excluded.light or (state.light = excluded.light and state.checksum > excluded.checksum)))
 )sql";
 
-}  // namespace
+constexpr const char* kRowsOfTruck =
+    "select load, moving_mass_kg, start_ns, end_ns, hours, coulomb_n, coulomb_std_n, "
+    "stiffness_npm, stiffness_std_npm, trust, usable from state where vehicle = $1 and truck = $2 "
+    "order by start_ns, record";
 
-class Database::Connection {
- public:
-  Connection(const fs::path& file, Access access) : name_{file.string()} {
-    const int flags =
-        access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-    const int code = sqlite3_open_v2(name_.c_str(), &handle_, flags, nullptr);
-    if (code != SQLITE_OK) fail();
-    constexpr int kPatienceMs = 10'000;  // while another collector writes
-    sqlite3_busy_timeout(handle_, kPatienceMs);
-    if (access == Access::kWrite) {
-      run("pragma journal_mode = wal");
-      run(kSchema);
-    }
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection() { sqlite3_close(handle_); }
+constexpr const char* kPutTrend = R"sql(
+insert into trend (vehicle, truck, load, moving_mass_kg, segments, usable_segments, faulty_segments,
+  hours, first_ns, last_ns, last_contact_utc, newest_trust, mean_n, mean_std_n, level_n, level_std_n,
+  change_n, change_std_n, trend_n_per_year, trend_std_n_per_year, scatter, stiffness_npm,
+  stiffness_std_npm)
+values ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, nullif($11, ''), $12, $13, $14, $15, $16, $17, $18,
+  $19, $20, $21, $22, $23)
+)sql";
 
-  void run(const char* sql) {
-    if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
-  }
-  [[nodiscard]] Statement prepare(const char* sql) {
-    sqlite3_stmt* statement = nullptr;
-    if (sqlite3_prepare_v2(handle_, sql, -1, &statement, nullptr) != SQLITE_OK) fail();
-    return Statement{statement};
-  }
-  /// True: there is a row.
-  bool step(const Statement& statement) {
-    const int code = sqlite3_step(statement.get());
-    if (code != SQLITE_ROW && code != SQLITE_DONE) fail();
-    return code == SQLITE_ROW;
-  }
-  [[nodiscard]] bool changed() const { return sqlite3_changes(handle_) > 0; }
-  [[nodiscard]] std::mutex& mutex() { return mutex_; }
-
- private:
-  [[noreturn]] void fail() const {
-    throw RunError{fmt::format("{}: {}", name_, sqlite3_errmsg(handle_))};
-  }
-  std::string name_;
-  sqlite3* handle_{nullptr};
-  std::mutex mutex_;
-};
-
-namespace {
-
-void set(const Statement& statement, int at, std::string_view text) {
-  sqlite3_bind_text(statement.get(), at, text.data(), static_cast<int>(text.size()),
-                    SQLITE_TRANSIENT);
-}
-void set(const Statement& statement, int at, std::int64_t number) {
-  sqlite3_bind_int64(statement.get(), at, number);
-}
-/// What is no number becomes null.
-void set(const Statement& statement, int at, double number) {
-  sqlite3_bind_double(statement.get(), at, number);
+/// Numbers whose squares and quotients a database can form.
+bool is_plausible(const Estimate& e) {
+  constexpr double kMost = 1e12;
+  constexpr double kLeastStd = 1e-6;
+  return std::abs(e.value) < kMost && e.std >= kLeastStd && e.std < kMost;
 }
 
-std::string text_at(const Statement& statement, int column) {
-  const auto* const text =
-      reinterpret_cast<const char*>(sqlite3_column_text(statement.get(), column));
-  return text == nullptr ? "" : text;
+void set(Query& query, int at, const std::optional<Estimate>& estimate) {
+  query.set(at, estimate ? estimate->value : std::nan(""));
+  query.set(at + 1, estimate ? estimate->std : std::nan(""));
 }
 
-std::string blob_at(const Statement& statement, int column) {
-  const auto* const bytes = static_cast<const char*>(sqlite3_column_blob(statement.get(), column));
-  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement.get(), column));
-  return bytes == nullptr ? "" : std::string{bytes, size};
+std::optional<Estimate> estimate_at(const Query& query, int column) {
+  if (query.cell(column) == store::Cell::kNull) return std::nullopt;
+  return Estimate{query.number(column), query.number(column + 1)};
 }
 
-void set_segment(const Statement& statement, const Segment& segment) {
-  set(statement, 1, segment.vehicle);
-  set(statement, 2, segment.truck);
-  set(statement, 3, segment.start_ns);
-  set(statement, 4, std::bit_cast<std::int64_t>(segment.record));
+std::optional<Estimate> plausible(const Estimate& e) {
+  return is_plausible(e) ? std::optional{e} : std::nullopt;
+}
+
+void set_segment(Query& query, const Segment& segment) {
+  query.set(1, segment.vehicle);
+  query.set(2, segment.truck);
+  query.set(3, segment.start_ns);
+  query.set(4, std::bit_cast<std::int64_t>(segment.record));
+}
+
+double hours_of(const Leaf& leaf) {
+  constexpr double kHourS = 3600.0;
+  const double measured = leaf.about.rate_hz.value;
+  const double rate_hz = measured > 0.0 ? measured : leaf.header.sample_rate_hz;
+  const double hours = static_cast<double>(leaf.about.sequence) / rate_hz / kHourS;
+  return std::isfinite(hours) ? hours : 0.0;
+}
+
+/// What came from outside as both databases can keep it.
+void check_texts(const Leaf& leaf) {
+  const StateAbout& about = leaf.about;
+  for (const std::string* text : {&about.segment.vehicle, &about.segment.truck, &about.load})
+    if (drivers::printable(*text) != *text)
+      throw RunError{fmt::format("{}: names {}, expected text without control characters, in UTF-8",
+                                 leaf.file.string(), drivers::quote(*text))};
+  if (about.sequence > static_cast<std::uint64_t>(INT64_MAX))
+    throw RunError{fmt::format("{}: counts {} samples, more than any record has",
+                               leaf.file.string(), about.sequence)};
+}
+
+bool is_usable(const StateAbout& about) {
+  return (about.trust == Trust::kTrusted || about.trust == Trust::kModelIncomplete) &&
+         is_plausible(about.coulomb_n);
+}
+
+std::unique_ptr<store::Connection> open(const std::string& where, store::Access access) {
+  return store::is_postgresql(where) ? store::open_postgresql(where, access)
+                                     : store::open_sqlite(where, access);
 }
 
 }  // namespace
 
-bool is_database(const fs::path& file) {
+bool is_database(const fs::path& where) {
+  if (store::is_postgresql(where.string())) return true;
   constexpr std::string_view kMagic = "SQLite format 3";
-  std::string head;
-  const auto read = drivers::read_parts(file.string(), [&](std::span<const char> part) {
-    head.append(part.data(), part.size());
-    return head.size() < kMagic.size();
-  });
-  return read.ok() && head.starts_with(kMagic);
+  std::array<char, kMagic.size()> head{};
+  std::ifstream stream{where, std::ios::binary};
+  stream.read(head.data(), head.size());
+  return stream.gcount() == static_cast<std::streamsize>(kMagic.size()) &&
+         std::string_view{head.data(), head.size()} == kMagic;
 }
 
-Database::Database(fs::path file, Access access)
-    : file_{std::move(file)}, connection_{std::make_shared<Connection>(file_, access)} {}
+Database::Database(const std::string& where, Access access)
+    : shared_{std::make_shared<Shared>(open(where, access))} {
+  if (access == Access::kWrite) {
+    begin();
+    if (!connection().has_table("fleet_schema")) make_tables();
+    connection().commit();
+  }
+  if (!connection().has_table("fleet_schema"))
+    throw RunError{
+        fmt::format("{}: holds no fleet; `dampline collect` makes one", connection().name())};
+  const auto version = connection().query("select version from fleet_schema");
+  if (!version->step() || version->integer(0) != kSchemaVersion)
+    throw RunError{fmt::format("{}: was made by another version of dampline; expected tables {}",
+                               connection().name(), kSchemaVersion)};
+}
 
-void Database::begin() { connection_->run("begin immediate"); }
-void Database::commit() { connection_->run("commit"); }
+void Database::make_tables() {
+  store::Connection& c = connection();
+  c.run(kTables);
+  c.run(c.segment_view());
+  c.run(kViews);
+  c.run(fmt::format("insert into fleet_schema values ({})", kSchemaVersion).c_str());
+}
+
+void Database::begin() { connection().begin(Access::kWrite); }
+
+void Database::commit() {
+  for (const Truck& truck : changed_) write_trends(truck);
+  changed_.clear();
+  connection().commit();
+}
 
 Stored Database::put(const Leaf& leaf, const std::string& bytes) {
   const StateAbout& about = leaf.about;
-  const Statement known = connection_->prepare(
-      "select 1 from state where vehicle = ?1 and truck = ?2 and start_ns = ?3 and record = ?4");
-  set_segment(known, about.segment);
-  const bool is_known = connection_->step(known);
-  const Statement put = connection_->prepare(kPut);
-  set_segment(put, about.segment);
-  set(put, 5, static_cast<std::int64_t>(about.sequence));
-  set(put, 6, about.end_ns);
-  set(put, 7, about.load);
-  set(put, 8, about.moving_mass_kg);
-  set(put, 9, fmt::format("{:016x}", leaf.header.basis_hash));
-  set(put, 10, about.rate_hz.value);
-  set(put, 11, about.coulomb_n.value);
-  set(put, 12, about.coulomb_n.std);
-  set(put, 13, about.stiffness_npm.value);
-  set(put, 14, about.stiffness_npm.std);
-  set(put, 15, name_of(about.trust));
-  set(put, 16, std::int64_t{leaf.light ? 1 : 0});
-  set(put, 17, std::int64_t{leaf.checksum});
-  sqlite3_bind_blob64(put.get(), 18, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
-  connection_->step(put);
+  check_texts(leaf);
+  const auto known = connection().query(
+      "select 1 from state where vehicle = $1 and truck = $2 and start_ns = $3 and record = $4");
+  set_segment(*known, about.segment);
+  const bool is_known = known->step();
+  const auto put = connection().query(kPut);
+  set_segment(*put, about.segment);
+  put->set(5, static_cast<std::int64_t>(about.sequence));
+  put->set(6, about.end_ns);
+  put->set(7, about.load);
+  put->set(8, about.moving_mass_kg);
+  put->set(9, fmt::format("{:016x}", leaf.header.basis_hash));
+  put->set(10, about.rate_hz.value);
+  set(*put, 11, plausible(about.coulomb_n));
+  set(*put, 13, plausible(about.stiffness_npm));
+  put->set(15, std::string_view{name_of(about.trust)});
+  put->set(16, std::int64_t{leaf.light ? 1 : 0});
+  put->set(17, std::int64_t{leaf.checksum});
+  put->set(18, hours_of(leaf));
+  put->set(19, std::int64_t{is_usable(about) ? 1 : 0});
+  put->set_bytes(20, bytes);
+  put->step();
+  const bool is_written = put->changed() > 0;
+  if (is_written) changed_.emplace(about.segment.vehicle, about.segment.truck);
   if (!is_known) return Stored::kNew;
-  return connection_->changed() ? Stored::kLater : Stored::kKnown;
+  return is_written ? Stored::kLater : Stored::kKnown;
 }
 
 void Database::refuse(const std::string& file, const std::string& reason) {
-  const Statement put = connection_->prepare("insert or replace into refused values (?1, ?2)");
-  set(put, 1, file);
-  set(put, 2, reason);
-  connection_->step(put);
+  // It is not the file's fault.
+  if (!connection().failure().empty()) throw RunError{connection().failure()};
+  const auto put = connection().query(
+      "insert into refused (file, reason) values ($1, $2) on conflict (file) do update set reason "
+      "= excluded.reason");
+  put->set(1, drivers::printable(file));
+  put->set(2, drivers::printable(reason));
+  put->step();
+}
+
+void Database::write_trends(const Truck& truck) {
+  const auto read = connection().query(kRowsOfTruck);
+  read->set(1, truck.first);
+  read->set(2, truck.second);
+  std::vector<SegmentRow> rows;
+  while (read->step())
+    rows.push_back({read->text(0), read->number(1), read->integer(2), read->integer(3),
+                    read->number(4), estimate_at(*read, 5).value_or(Estimate{}),
+                    estimate_at(*read, 7), read->text(9), read->integer(10) == 1});
+  const auto remove = connection().query("delete from trend where vehicle = $1 and truck = $2");
+  remove->set(1, truck.first);
+  remove->set(2, truck.second);
+  remove->step();
+  for (const Trend& trend : trends_of(rows)) {
+    const auto put = connection().query(kPutTrend);
+    put->set(1, truck.first);
+    put->set(2, truck.second);
+    put->set(3, trend.load);
+    put->set(4, trend.moving_mass_kg);
+    put->set(5, trend.segments);
+    put->set(6, trend.usable_segments);
+    put->set(7, trend.faulty_segments);
+    put->set(8, trend.hours);
+    put->set(9, trend.first_ns);
+    put->set(10, trend.last_ns);
+    constexpr std::size_t kToTheSecond = 19;
+    std::string contact = trend.last_ns == 0 ? "" : utc_text(trend.last_ns).substr(0, kToTheSecond);
+    if (const std::size_t t = contact.find('T'); t != std::string::npos) contact[t] = ' ';
+    put->set(11, contact);
+    put->set(12, trend.newest_trust);
+    set(*put, 13, trend.mean_n);
+    set(*put, 15, trend.level_n);
+    set(*put, 17, trend.change_n);
+    set(*put, 19, trend.trend_n_per_year);
+    put->set(21, trend.scatter.value_or(std::nan("")));
+    set(*put, 22, trend.stiffness_npm);
+    put->step();
+  }
+}
+
+void Database::renew_trends() {
+  begin();
+  connection().run("delete from trend");
+  const auto all = connection().query("select distinct vehicle, truck from state");
+  while (all->step()) changed_.emplace(all->text(0), all->text(1));
+  commit();
 }
 
 std::uint64_t Database::states() const {
-  const Statement count = connection_->prepare("select count(*) from state");
-  connection_->step(count);
-  return static_cast<std::uint64_t>(sqlite3_column_int64(count.get(), 0));
+  const auto count = connection().query("select count(*) from state");
+  count->step();
+  return static_cast<std::uint64_t>(count->integer(0));
 }
 
 std::vector<Leaf> Database::leaves() const {
   std::vector<Segment> segments;
-  const Statement all = connection_->prepare(
-      "select vehicle, truck, start_ns, record from state order by 1, 2, 3, 4");
-  while (connection_->step(all))
-    segments.push_back({text_at(all, 0), text_at(all, 1), sqlite3_column_int64(all.get(), 2),
-                        std::bit_cast<std::uint64_t>(sqlite3_column_int64(all.get(), 3))});
+  const auto all =
+      connection().query("select vehicle, truck, start_ns, record from state order by 1, 2, 3, 4");
+  while (all->step())
+    segments.push_back({all->text(0), all->text(1), all->integer(2),
+                        std::bit_cast<std::uint64_t>(all->integer(3))});
   std::vector<Leaf> out;
   const auto scratch = std::make_unique<Statistics>();
   for (const Segment& segment : segments) {
-    const auto read = [connection = connection_, segment] {
-      const std::lock_guard lock{connection->mutex()};
-      const Statement body = connection->prepare(
-          "select body from state where vehicle = ?1 and truck = ?2 and start_ns = ?3 and "
-          "record = ?4");
-      set_segment(body, segment);
-      return connection->step(body) ? blob_at(body, 0) : std::string{};
+    const auto read = [shared = shared_, segment] {
+      const std::lock_guard lock{shared->mutex()};
+      const auto body = shared->connection().query(
+          "select body from state where vehicle = $1 and truck = $2 and start_ns = $3 and record "
+          "= $4");
+      set_segment(*body, segment);
+      return body->step() ? body->bytes(0) : std::string{};
     };
-    out.push_back(leaf_of(fmt::format("{}:{}/{}/{}", file_.string(), segment.vehicle, segment.truck,
-                                      segment.start_ns),
+    out.push_back(leaf_of(fmt::format("{}:{}/{}/{}", connection().name(), segment.vehicle,
+                                      segment.truck, segment.start_ns),
                           read, *scratch));
   }
   return out;

@@ -127,7 +127,7 @@ std::vector<Leaf> all_leaves(const std::vector<std::string>& sources,
   const auto scratch = std::make_unique<Statistics>();
   for (const Found& found : find_states(sources)) {
     if (is_database(found.file)) {
-      std::vector<Leaf> stored = Database{found.file, Database::Access::kRead}.leaves();
+      std::vector<Leaf> stored = Database{found.file.string(), Database::Access::kRead}.leaves();
       std::move(stored.begin(), stored.end(), std::back_inserter(out));
       continue;
     }

@@ -52,6 +52,10 @@ std::string lines_of(std::string_view text) {
   return out;
 }
 
+std::string linked(const std::string& html, const std::string& link) {
+  return link.empty() ? html : fmt::format("<a href=\"{}\">{}</a>", escape_html(link), html);
+}
+
 std::string header_cell(const std::string& name, bool is_number) {
   if (name.empty()) return "<td></td>";  // a heading says something
   return fmt::format(R"(<th role="columnheader" scope="col"{}>{}</th>)",
@@ -63,7 +67,7 @@ std::string header_cell(const std::string& name, bool is_number) {
 // The roles say again what the elements mean: a phone lays tables out as no tables.
 std::string html_table(const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows, std::size_t numbers,
-                       const std::vector<bool>& grey) {
+                       const std::vector<bool>& grey, const std::vector<std::string>& links) {
   const auto is_number = [&](std::size_t i) { return i >= 1 && i <= numbers; };
   std::string out = fmt::format(R"(<table role="table"{}><thead><tr role="row">)",
                                 header.size() > 2 ? " class=\"wide\"" : "");
@@ -79,7 +83,8 @@ std::string html_table(const std::vector<std::string>& header,
                                                              : "";
       out += fmt::format(R"(<td role="cell"{}{}>{}</td>)", kind,
                          labelled ? fmt::format(R"( data-label="{}")", escape_html(header[i])) : "",
-                         lines_of(rows[row][i]));
+                         i == 0 && row < links.size() ? linked(lines_of(rows[row][i]), links[row])
+                                                      : lines_of(rows[row][i]));
     }
     out += "</tr>\n";
   }

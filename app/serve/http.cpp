@@ -30,7 +30,7 @@ constexpr const char* kCookie = "dampline_token";
 constexpr std::array<std::array<const char*, 2>, 5> kHeaders{{
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
-     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
     {"X-Content-Type-Options", "nosniff"},
     {"Referrer-Policy", "no-referrer"},
     {"Cross-Origin-Resource-Policy", "same-origin"},
@@ -87,6 +87,17 @@ std::vector<MHD_OptionItem> tls_options(TlsSettings& tls) {
 void log_nothing(void* /*context*/, const char* /*format*/, va_list /*arguments*/) {}
 
 }  // namespace
+
+HttpSettings http_settings(const NamedSetting& address, const NamedSetting& token_file,
+                           const char* beside, TlsSettings tls) {
+  HttpSettings out{parse_address(address.value, address.name), "", std::move(tls)};
+  if (!token_file.value.empty()) out.token = read_token(token_file.value, token_file.name);
+  if (!out.address.loopback && !out.knows_readers())
+    throw UsageError{
+        fmt::format("{}: {} can be reached by others, expected a loopback address, or {} beside it",
+                    address.name, address.value, beside)};
+  return out;
+}
 
 /// What the library calls.
 struct HttpServer::Callbacks {
@@ -148,6 +159,11 @@ HttpServer::~HttpServer() {
 std::uint16_t HttpServer::port() const noexcept {
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT);
   return info == nullptr ? std::uint16_t{0} : info->port;
+}
+
+std::string HttpServer::where(const std::string& address) const {
+  return fmt::format("{}://{}:{}/", settings_.tls.on() ? "https" : "http",
+                     address.substr(0, address.rfind(':')), port());
 }
 
 void HttpServer::set(const char* path, const char* type, std::string body, unsigned status) {
@@ -216,9 +232,20 @@ int HttpServer::answer(const Request& request) {
                   "a token is needed: Authorization: Bearer TOKEN, or ?token=TOKEN\n");
   if (!stream_path_.empty() && request.path == stream_path_) return answer_stream(request);
   const auto found = documents_.find(request.path);
-  if (found == documents_.end())
-    return refuse(request.connection, MHD_HTTP_NOT_FOUND, "no such path\n");
+  if (found == documents_.end()) return answer_made(request, by_query);
   return reply(request.connection, found->second, by_query);
+}
+
+int HttpServer::answer_made(const Request& request, bool set_cookie) const {
+  const auto value = [&](const char* name) {
+    return std::string{value_of(request.connection, MHD_GET_ARGUMENT_KIND, name)};
+  };
+  std::optional<Made> made = maker_ ? maker_({request.path, value}) : std::nullopt;
+  if (!made) return refuse(request.connection, MHD_HTTP_NOT_FOUND, "no such path\n");
+  return reply(request.connection,
+               {made->type, made->status,
+                std::make_shared<const std::string>(std::move(made->body)), std::move(made->file)},
+               set_cookie);
 }
 
 bool HttpServer::knows_host(MHD_Connection* connection) const {
@@ -248,6 +275,9 @@ int HttpServer::reply(MHD_Connection* connection, const Document& document, bool
   const Response response = response_of(document.body);
   if (!response) return MHD_NO;
   add_headers(response.get(), document.type);
+  if (!document.file.empty())
+    MHD_add_response_header(response.get(), MHD_HTTP_HEADER_CONTENT_DISPOSITION,
+                            fmt::format("attachment; filename={}", document.file).c_str());
   if (document.status == MHD_HTTP_METHOD_NOT_ALLOWED)
     MHD_add_response_header(response.get(), MHD_HTTP_HEADER_ALLOW, "GET, HEAD");
   if (document.status == MHD_HTTP_UNAUTHORIZED)

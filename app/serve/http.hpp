@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "app/serve/address.hpp"
 #include "app/serve/tls.hpp"
@@ -28,6 +31,17 @@ struct HttpSettings {
   }
 };
 
+/// What somebody set, and where: as errors call it.
+struct NamedSetting {
+  const std::string& value;
+  const char* name;
+};
+/// Throws UsageError for a wrong address or token, and for an address that others can reach without
+/// knowing its readers; `beside` names what makes it know them.
+[[nodiscard]] HttpSettings http_settings(const NamedSetting& address,
+                                         const NamedSetting& token_file, const char* beside,
+                                         TlsSettings tls = {});
+
 /// Documents and one stream of events over HTTP/1.1, read only, from the memory of this object. It
 /// has no thread: whoever calls turn() is it, and calls the other methods. A reader that does not
 /// keep up skips events; nobody waits for it.
@@ -42,9 +56,26 @@ class HttpServer {
   ~HttpServer();
 
   [[nodiscard]] std::uint16_t port() const noexcept;
+  /// "http://127.0.0.1:9464/", of the address as it was given.
+  [[nodiscard]] std::string where(const std::string& address) const;
 
   /// What a GET of `path` answers from now on. `path` and `type` are literals.
   void set(const char* path, const char* type, std::string body, unsigned status = 200);
+  /// What is made when somebody asks: of a path that set() does not know, and of `?name=value`.
+  struct Asked {
+    std::string_view path;
+    /// "" where the address has no such value.
+    std::function<std::string(const char* name)> value;
+  };
+  struct Made {
+    const char* type;
+    std::string body;
+    unsigned status{200};
+    std::string file{};  ///< a name under which a browser is to save it
+  };
+  /// Nothing: there is no such path.
+  using Maker = std::function<std::optional<Made>(const Asked&)>;
+  void make_by(Maker maker) { maker_ = std::move(maker); }
   /// A path of its own that streams the events.
   void stream_at(const char* path) { stream_path_ = path; }
   /// An event for every reader of the stream. `whole`: what brings a new reader, or one that was
@@ -66,6 +97,7 @@ class HttpServer {
     const char* type;
     unsigned status;
     std::shared_ptr<const std::string> body;
+    std::string file{};
   };
   struct Request {
     MHD_Connection* connection;
@@ -84,6 +116,7 @@ class HttpServer {
   struct Callbacks;
 
   [[nodiscard]] int answer(const Request& request);
+  [[nodiscard]] int answer_made(const Request& request, bool set_cookie) const;
   [[nodiscard]] int answer_stream(const Request& request);
   [[nodiscard]] int reply(MHD_Connection* connection, const Document& document,
                           bool set_cookie) const;
@@ -95,6 +128,7 @@ class HttpServer {
 
   HttpSettings settings_;
   std::map<std::string, Document, std::less<>> documents_;
+  Maker maker_;
   std::string stream_path_;
   std::deque<std::shared_ptr<const std::string>> events_;
   std::uint64_t first_event_{0};  ///< number of events_.front()

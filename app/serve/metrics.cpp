@@ -11,53 +11,12 @@
 
 #include "app/run/provenance.hpp"
 #include "app/run/trust.hpp"
+#include "app/serve/exposition.hpp"
 
 namespace dampline::app {
 namespace {
 
-using Labels = std::vector<std::pair<std::string_view, std::string_view>>;
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '\n') {
-      out += "\\n";
-      continue;
-    }
-    if (c == '\\' || c == '"') out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-class Text {
- public:
-  void begin(std::string_view name, std::string_view type, std::string_view help) {
-    name_ = name;
-    out_ += fmt::format("# HELP dampline_{0} {1}\n# TYPE dampline_{0} {2}\n", name, help, type);
-  }
-  template <class Number>
-  void value(Number number, const Labels& labels = {}, std::string_view suffix = "") {
-    if (!std::isfinite(static_cast<double>(number))) return;
-    out_ += fmt::format("dampline_{}{}", name_, suffix);
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      out_ += fmt::format("{}{}=\"{}\"", i == 0 ? "{" : ",", labels[i].first,
-                          escaped(labels[i].second));
-    out_ += fmt::format("{} {}\n", labels.empty() ? "" : "}", number);
-  }
-  template <class Number>
-  void single(std::string_view name, std::string_view type, std::string_view help, Number number) {
-    begin(name, type, help);
-    value(number);
-  }
-  [[nodiscard]] std::string take() { return std::move(out_); }
-
- private:
-  std::string out_;
-  std::string name_;
-};
-
-void write_build(const RunResult& result, Text& text) {
+void write_build(const RunResult& result, Exposition& text) {
   const std::string version_text = version();
   const std::string commit_text = commit();
   text.begin("build_info", "gauge", "Always 1; which program this is.");
@@ -68,7 +27,7 @@ void write_build(const RunResult& result, Text& text) {
                  {"source", result.origin.source}});
 }
 
-void write_parameters(const RunResult& result, Text& text) {
+void write_parameters(const RunResult& result, Exposition& text) {
   text.begin("parameter", "gauge", "An identified parameter, in the unit of its label.");
   for (const Parameter& p : result.parameters)
     text.value(p.value, {{"name", p.name}, {"unit", p.unit}});
@@ -77,7 +36,7 @@ void write_parameters(const RunResult& result, Text& text) {
     text.value(p.std, {{"name", p.name}, {"unit", p.unit}});
 }
 
-void write_trust(const RunResult& result, Text& text) {
+void write_trust(const RunResult& result, Exposition& text) {
   text.begin("trust", "gauge", "1 for what the result is worth now, 0 for what it is not.");
   for (const Trust trust :
        {Trust::kTrusted, Trust::kModelIncomplete, Trust::kDataFaulty, Trust::kNotIdentified})
@@ -86,7 +45,7 @@ void write_trust(const RunResult& result, Text& text) {
   for (const std::string& effect : result.lacking) text.value(1, {{"effect", effect}});
 }
 
-void write_state(const RunResult& result, Text& text) {
+void write_state(const RunResult& result, Exposition& text) {
   if (!result.live) return;
   const LiveFigures& live = *result.live;
   text.begin("state", "gauge", "1 for the state of the acquisition, 0 for the others.");
@@ -116,7 +75,7 @@ void write_state(const RunResult& result, Text& text) {
               live.publish_failures);
 }
 
-void write_frames(const RunResult& result, Text& text) {
+void write_frames(const RunResult& result, Exposition& text) {
   constexpr std::string_view kPrefix = "frames_";
   text.begin("frames_total", "counter",
              "CAN frames by what became of them; sent = processed + dropped + missing + excluded, "
@@ -126,7 +85,7 @@ void write_frames(const RunResult& result, Text& text) {
       text.value(count, {{"result", std::string_view{name}.substr(kPrefix.size())}});
 }
 
-void write_faults(const RunResult& result, Text& text) {
+void write_faults(const RunResult& result, Exposition& text) {
   text.begin("faults", "gauge", "Events of each fault of a sensor or the transport so far.");
   for (const FaultFinding& fault : result.faults.list)
     text.value(fault.count, {{"name", fault.name}, {"channel", fault.channel}});
@@ -137,7 +96,7 @@ void write_faults(const RunResult& result, Text& text) {
 
 /// The bins of the histogram have an edge at each power of two of nanoseconds, where the counts
 /// are exact. The sum is that of the bins' middles: good to 3 %.
-void write_lateness(const RunResult& result, Text& text) {
+void write_lateness(const RunResult& result, Exposition& text) {
   constexpr int kFirst = 13;  // 8.2 us
   constexpr int kLast = 33;   // 8.6 s
   constexpr double kEdgeShare = 1.0 + 1e-9;
@@ -165,7 +124,7 @@ void write_lateness(const RunResult& result, Text& text) {
 }  // namespace
 
 std::string metrics_text(const RunResult& result, const ServerFigures* server) {
-  Text text;
+  Exposition text;
   write_build(result, text);
   write_parameters(result, text);
   write_trust(result, text);

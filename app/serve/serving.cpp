@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/error.hpp"
@@ -15,8 +16,8 @@
 #include "app/record/rate.hpp"
 #include "app/report/assets.hpp"
 #include "app/serve/assets.hpp"
+#include "app/serve/exposition.hpp"
 #include "app/serve/metrics.hpp"
-#include "app/text/format.hpp"
 
 namespace dampline::app {
 namespace {
@@ -26,19 +27,7 @@ constexpr std::chrono::milliseconds kTellEvery{500};
 constexpr int kServeNice = 10;  // the acquisition and the writer come first
 
 constexpr const char* kJsonType = "application/json; charset=utf-8";
-constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 constexpr const char* kTextType = "text/plain; charset=utf-8";
-
-HttpSettings http_settings(const ServeSettings& serve) {
-  HttpSettings out{parse_address(serve.address, "[serve] address"), "", read_tls(serve)};
-  if (!serve.token_file.empty()) out.token = read_token(serve.token_file, "[serve] token_file");
-  if (!out.address.loopback && !out.knows_readers())
-    throw UsageError{fmt::format(
-        "[serve] address: {} can be reached by others, expected a loopback address, or [serve] "
-        "token_file or client_ca_file beside it",
-        serve.address)};
-  return out;
-}
 
 std::string event(std::string_view name, std::string_view data) {
   return fmt::format("event: {}\ndata: {}\n\n", name, data);
@@ -65,15 +54,16 @@ class NoSignals {
 std::unique_ptr<Serving> open_serving(const Config& config) {
   if (config.serve.address.empty()) return nullptr;
   auto out = std::make_unique<Serving>(config);
-  tell(fmt::format("serving {}\n", out->where()));
+  fmt::print(stderr, "serving {}\n", out->where());
   return out;
 }
 
 Serving::Serving(const Config& config)
-    : config_{config}, server_{http_settings(config.serve)}, view_{config} {
-  const std::string& address = config.serve.address;
-  where_ = fmt::format("{}://{}:{}/", config.serve.cert_file.empty() ? "http" : "https",
-                       address.substr(0, address.rfind(':')), server_.port());
+    : config_{config},
+      server_{http_settings({config.serve.address, "[serve] address"},
+                            {config.serve.token_file, "[serve] token_file"})},
+      view_{config} {
+  where_ = server_.where(config.serve.address);
   wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   if (wake_ < 0) throw RunError{"cannot serve: no file descriptor is left"};
   set_assets();
@@ -113,7 +103,7 @@ void Serving::set_assets() {
   server_.set("/live.js", "text/javascript; charset=utf-8", std::string{live_script()});
   server_.stream_at("/events");
   const ServerFigures figures;
-  server_.set("/metrics", kMetricsType, metrics_text(newest_, &figures));
+  server_.set("/metrics", Exposition::kType, metrics_text(newest_, &figures));
   server_.set("/live.json", kJsonType, "{}\n");
   server_.set("/view.json", kJsonType, view_.document(sequence_));
 }
@@ -168,7 +158,7 @@ void Serving::tell() {
   }
   set_health(state);
   const ServerFigures figures{server_.requests(), server_.readers(), tap_.lost()};
-  server_.set("/metrics", kMetricsType, metrics_text(newest_, &figures));
+  server_.set("/metrics", Exposition::kType, metrics_text(newest_, &figures));
   server_.send(event("now", now_text(state, view_.newest_motion())),
                "retry: 2000\n" + event("now", now_text(state, view_.shown_motion())));
 }

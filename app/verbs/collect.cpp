@@ -76,7 +76,7 @@ void print_collected(const CollectFlags& flags, const fleet::Database& database,
   }
   if (flags.quiet) return;
   fmt::print("{} new, {} later, {} known; {} segments in {}\n", c.fresh, c.later, c.known,
-             database.states(), drivers::printable(flags.database));
+             database.states(), drivers::printable(database.connection().name()));
 }
 
 int collect(const CollectFlags& flags) {
@@ -105,8 +105,10 @@ void add_collect_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("STATE", flags->sources,
                    "states, run directories of trucks, or directories of these: a spool, a stick")
       ->required();
-  verb->add_option("--db", flags->database,
-                   "SQLite's file, made where it is missing; `dampline merge FILE` merges it")
+  verb->add_option(
+          "--db", flags->database,
+          "SQLite's file, made where it is missing, or postgresql://...; `dampline merge` of "
+          "either merges it")
       ->required();
   verb->add_flag("--json", flags->json, "print what was done as JSON");
   verb->add_flag("--quiet", flags->quiet, "print nothing but errors and warnings");

@@ -56,7 +56,11 @@ std::size_t letter_bytes(std::string_view text) {
   if (byte(0) < 0xC2 || byte(0) > 0xF4 || text.size() < bytes) return 0;
   for (std::size_t i = 1; i < bytes; ++i)
     if ((byte(i) & 0xC0U) != 0x80U) return 0;
-  return byte(0) == 0xC2 && byte(1) < 0xA0 ? 0 : bytes;
+  // C1 controls; then what could be written in fewer bytes, surrogates and what is beyond U+10FFFF.
+  if (byte(0) == 0xC2 && byte(1) < 0xA0) return 0;
+  const bool is_none = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) > 0x9F) ||
+                       (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) > 0x8F);
+  return is_none ? 0 : bytes;
 }
 
 }  // namespace

@@ -104,5 +104,137 @@ TEST_F(Collect, KilledAnywhereLosesNothing) {
   EXPECT_EQ(ask("pragma integrity_check"), "ok\n");
 }
 
+/// A fleet of light states: of three cars, two loads, 40 days; some earlier states, one faulty, one
+/// that names what no database can hold.
+class CollectFleet : public Collect {
+ protected:
+  void SetUp() override {
+    make_logs(1);
+    identify_logs(1);
+    std::filesystem::create_directories(program_.path("spool"));
+    const auto sums = std::make_unique<Statistics>();
+    const StateAbout first = load_state(program_.path("r0/state.dls"), *sums);
+    for (int i = 0; i < kStates; ++i) {
+      StateAbout about = first;
+      about.segment.vehicle = fmt::format("car {}", i % 3);
+      about.segment.start_ns += (i / 6) * kDayNs + i % 2;
+      about.end_ns += (i / 6) * kDayNs + i % 2;
+      about.load = i % 2 == 0 ? "laden" : "empty";
+      about.coulomb_n.value += 10.0 * (i / 6) + 7.0 * (i % 5);
+      if (i == 17) about.trust = Trust::kDataFaulty;
+      write_state(i, "", about, *sums);
+      about.sequence /= 2;
+      about.coulomb_n.value = -1.0;
+      if (i % 9 == 0) write_state(i, "earlier", about, *sums);
+    }
+    StateAbout foreign = first;
+    foreign.segment.vehicle = "\xED\xA0\x80";  // a surrogate
+    write_state(kStates, "", foreign, *sums);
+  }
+  void write_state(int i, const char* more, const StateAbout& about, const Statistics& sums) const {
+    program_.write(fmt::format("spool/{}{}.dls", i, more),
+                   encode_state(sums, about, StateKind::kLight));
+  }
+  std::string csv(const std::string& more) const {
+    const auto outcome = program_.run("fleet --db fleet.sqlite --csv " + more);
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
+    return outcome.output;
+  }
+  /// Numbers to nine digits.
+  static std::string rounded(const std::string& table) {
+    std::string out;
+    std::string cell;
+    for (const char c : table) {
+      if (c != ',' && c != '\n') {
+        cell += c;
+        continue;
+      }
+      char* end = nullptr;
+      const double number = std::strtod(cell.c_str(), &end);
+      out += !cell.empty() && *end == '\0' ? fmt::format("{:.9g}", number) : cell;
+      out += c;
+      cell.clear();
+    }
+    return out;
+  }
+  static constexpr int kStates = 240;
+  static constexpr std::int64_t kDayNs = 86'400'000'000'000;
+};
+
+TEST_F(CollectFleet, KeepsTrendsAsTheirRowsSay) {
+  // In parts and in another order, the later state before the earlier one and behind it.
+  const auto part = [&](const char* pattern) {
+    const auto outcome =
+        program_.run(fmt::format("collect --db fleet.sqlite --quiet spool/{}", pattern));
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
+  };
+  for (const char* pattern : {"*7.dls", "1*.dls", "*earlier.dls"}) part(pattern);
+  EXPECT_EQ(collect("spool").at("segments"), kStates);
+  EXPECT_THAT(ask("select reason from refused"), HasSubstr(R"(\xED\xA0\x80)"));
+  const std::string kept = csv("trend");
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'), 1 + 6);
+  EXPECT_TRUE(kept == csv("trend --renew")) << "recomputed";
+  const auto number = [&](const char* column) {
+    return std::stod(ask(
+        fmt::format("select {} from trend where vehicle = 'car 0' and load = 'laden'", column)));
+  };
+  // 10 N a day, beside what the segments scatter.
+  EXPECT_NEAR(number("trend_n_per_year"), 3652.5, 3.0 * number("trend_std_n_per_year"));
+  EXPECT_LT(number("trend_std_n_per_year"), 200.0);
+  EXPECT_NEAR(number("level_n") - number("mean_n"), 10.0 * (39 - 3) / 2.0, 12.0);
+  EXPECT_EQ(ask("select cast(sum(segments) as bigint), cast(sum(faulty_segments) as bigint), "
+                "sum(usable_segments) from trend"),
+            "240,1,239\n");
+}
+
+TEST_F(CollectFleet, IsOnAServerWhatItIsInAFile) {
+  if (!std::filesystem::exists("/usr/lib/postgresql/15/bin/initdb"))
+    GTEST_SKIP() << "no postgresql-15";
+  if (program_.run("collect --db postgresql:///none?host=/none spool").code == 2)
+    GTEST_SKIP() << "built without libpq";
+  static_cast<void>(collect("spool"));
+  program_.write("script", R"sh(set -e
+for after in .03 .06 .09 .15; do  # killed anywhere
+  timeout -s KILL $after "$DAMPLINE" collect --db "$DAMPLINE_DB" --quiet spool || true
+done
+for i in 1 2; do  # two at once, in another order
+  "$DAMPLINE" collect --db "$DAMPLINE_DB" --quiet $(ls -d spool/* | shuf --random-source=script) &
+done 2>/dev/null
+wait
+"$DAMPLINE" collect --db "$DAMPLINE_DB" --json spool >collected.json
+"$DAMPLINE" merge "$DAMPLINE_DB" --by vehicle,load --quiet --no-report --out on_server
+for view in truck trend month segment figure norm outlier; do
+  "$DAMPLINE" fleet --db "$DAMPLINE_DB_READ" --csv $view >$view.csv
+done
+! "$DAMPLINE" collect --db "$DAMPLINE_DB_READ" --quiet spool 2>denied
+)sh");
+  const auto outcome = shell("DAMPLINE='" DAMPLINE_BINARY_DIR
+                             "/dampline' DAMPLINE_PG_FSYNC=off timeout 120 '" DAMPLINE_SOURCE_DIR
+                             "/app/service/fleet/start' engine sh script");
+  ASSERT_EQ(outcome.code, 0) << outcome.error;
+  const json collected = json::parse(program_.read("collected.json"));
+  EXPECT_EQ(collected.at("states_new"), 0);
+  EXPECT_EQ(collected.at("segments"), kStates);
+  for (const char* view : {"trend", "segment", "figure", "norm", "outlier"})
+    EXPECT_EQ(program_.read(fmt::format("{}.csv", view)), csv(view)) << view;
+  for (const char* view : {"truck", "month"})  // whose sums have no order
+    EXPECT_EQ(rounded(program_.read(fmt::format("{}.csv", view))), rounded(csv(view))) << view;
+  EXPECT_THAT(program_.read("denied"), HasSubstr("permission denied"));
+  expect_success("merge fleet.sqlite --by vehicle,load --quiet --no-report --out in_file");
+  for (const char* group : {"car_0.laden", "car_2.empty"})
+    EXPECT_TRUE(bytes_of(fmt::format("on_server/{}", group)) ==
+                bytes_of(fmt::format("in_file/{}", group)))
+        << group;
+}
+
+TEST_F(Collect, NamesNoPassword) {
+  const auto outcome =
+      program_.run("collect --db 'postgresql://me:secret@/dampline?host=/none&password=hidden' .");
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_THAT(outcome.error, HasSubstr("postgresql://me:***@/dampline?host=/none&password=***"));
+  EXPECT_THAT(outcome.error + outcome.output, testing::Not(HasSubstr("secret")));
+  EXPECT_THAT(outcome.error + outcome.output, testing::Not(HasSubstr("hidden")));
+}
+
 }  // namespace
 }  // namespace dampline::app
