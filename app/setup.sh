@@ -56,6 +56,7 @@ openssl              makes certificates
 sqlite3              reads the database of a fleet
 libpq-dev            keeps them in PostgreSQL, an optional part of the program
 postgresql-15        that server
+python3-yaml         reads the file of its containers
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

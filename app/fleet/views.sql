@@ -54,7 +54,7 @@ from (
 group by load, moving_mass_kg, quantity, unit, trucks;
 
 -- Trucks that differ from those of their load by more than 4.5 standard deviations of both, where
--- there are 20 or more of these: constants.md.
+-- there are 20 or more of these: docs/reference.md.
 create view outlier as
 select figure.vehicle, figure.truck, figure.load, figure.moving_mass_kg, figure.quantity, figure.unit,
   value, std, median, scatter,

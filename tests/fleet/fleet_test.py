@@ -10,6 +10,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -113,6 +114,35 @@ class FleetTest(unittest.TestCase):
         if shutil.which("promtool"):
             done = subprocess.run(["promtool", "check", "metrics"], input=metrics.encode(), capture_output=True)
             self.assertEqual((done.returncode, done.stdout + done.stderr), (0, b""))
+
+    def test_deployment_files_are_right(self):
+        folder = TOP / "app/service/fleet"
+        try:
+            import yaml
+        except ImportError:
+            self.skipTest("no yaml")
+        compose = yaml.safe_load((folder / "compose.yaml").read_text())
+        for name, service in compose["services"].items():
+            for volume in service.get("volumes", []):
+                source = volume.split(":")[0]
+                if source.startswith("./") and source != "./spool":
+                    self.assertTrue((folder / source).exists(), (name, source))
+                elif not source.startswith("."):
+                    self.assertIn(source, compose["volumes"])
+            self.assertLessEqual(set(service.get("secrets", [])), set(compose["secrets"]))
+            if service["image"] == "dampline":  # flags that the program has
+                verb, *words = service["command"]
+                said = subprocess.run([DAMPLINE, verb, "--help"], capture_output=True, text=True).stdout
+                for flag in (word for word in words if word.startswith("--")):
+                    self.assertIn(flag + " ", said)
+        rules = yaml.safe_load((folder / "fleet.rules.yml").read_text())
+        metrics = (TOP / "app/fleet/page/metrics.cpp").read_text()
+        for rule in rules["groups"][0]["rules"]:
+            for metric in re.findall(r"dampline_(\w+)", rule["expr"]):
+                self.assertIn(f'"{metric}"', metrics)
+        if shutil.which("promtool"):
+            for what in (["config", "--syntax-only", "prometheus.yml"], ["rules", "fleet.rules.yml"]):
+                subprocess.run(["promtool", "check", *what], cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
     def test_an_address_for_others_needs_a_token(self):
         done = subprocess.run([DAMPLINE, "fleet", "--db", self.file, "--serve", "0.0.0.0:0"], capture_output=True,
