@@ -182,6 +182,9 @@ def report(kind, filled_s, fleet, rows, total, hits, false, size):
     print(f"\n{kind}: {total['cars']} cars, {total['segments']} segments, filled in {filled_s:.0f} s with `fleet --renew`; "
           f"{size / 1e6:.0f} MB on disk, {size / total['segments']:.0f} bytes a segment"
           + (f" with a state of {len(fleet.body)} bytes" if fleet.body else " without states") + ".\n")
+    if not fleet.body:
+        print(f"With a light state of 5.2 KB in each row {(size + 5.2e3 * total['segments']) / 1e9:.0f} GB, with a full one "
+              f"of 190 KB {(size + 190e3 * total['segments']) / 1e12:.2f} TB.\n")
     print("| answer | s | kB |\n|--|--|--|")
     for name, seconds, characters in rows:
         print(f"| {name} | {seconds:.3f} | {characters / 1e3:.0f} |")

@@ -40,6 +40,7 @@ PARTS = {
     "blackbox": "Recording",
     "other_processors": "Other processors, in emulators",
     "archive": "Archives of logs",
+    "fleet": "A fleet of 10,000 cars for a year",
     "live": "Lateness of a live run",
     "accuracy": "Accuracy",
     "small_parts": "The estimate for small parts",
