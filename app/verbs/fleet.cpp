@@ -22,7 +22,7 @@ namespace dampline::app {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace fleet::page;
+namespace pages = fleet::page;
 
 struct FleetFlags {
   std::string database, vehicle, out, csv, serve, token_file;
@@ -40,37 +40,42 @@ void write_out(const FleetFlags& flags, fleet::store::Connection& connection) {
   fs::create_directories(folder, error);
   if (error) fail_io(folder, "write into it", error.value());
   if (of_one) {
-    const std::optional<Car> car = read_car(connection, flags.vehicle, read_fleet(connection));
+    const std::optional<pages::Car> car =
+        pages::read_car(connection, flags.vehicle, pages::read_fleet(connection));
     if (!car)
       throw RunError{
           fmt::format("{}: has no car {}", connection.name(), drivers::quote(flags.vehicle))};
     for (const char* view : {"segment", "month"})
-      write_file(folder / fmt::format("{}.csv", view), view_csv(connection, view, flags.vehicle));
-    write_file(page, car_page(*car, connection.name(), Kind::kAlone));
+      write_file(folder / fmt::format("{}.csv", view),
+                 pages::view_csv(connection, view, flags.vehicle));
+    write_file(page, pages::car_page(*car, connection.name(), pages::Kind::kAlone));
     return;
   }
-  const Fleet fleet = read_fleet(connection);
+  const pages::Fleet all = pages::read_fleet(connection);
   for (const char* view : {"truck", "trend", "outlier", "norm"})
-    write_file(folder / fmt::format("{}.csv", view), view_csv(connection, view, std::nullopt));
-  write_file(page, fleet_page(fleet, connection.name(), Kind::kAlone));
+    write_file(folder / fmt::format("{}.csv", view),
+               pages::view_csv(connection, view, std::nullopt));
+  write_file(page, pages::fleet_page(all, connection.name(), pages::Kind::kAlone));
 }
 
 int show_fleet(const FleetFlags& flags) {
   if (!flags.serve.empty()) {
-    serve_fleet({flags.database, flags.serve, flags.token_file});
+    pages::serve_fleet({flags.database, flags.serve, flags.token_file});
     return 0;
   }
   if (flags.renew) fleet::Database{flags.database, fleet::Database::Access::kWrite}.renew_trends();
   const fleet::Database database{flags.database, fleet::Database::Access::kRead};
   if (!flags.out.empty()) write_out(flags, database.connection());
   if (!flags.csv.empty()) {
-    fmt::print("{}", view_csv(database.connection(), flags.csv,
+    fmt::print(
+        "{}", pages::view_csv(database.connection(), flags.csv,
                               flags.vehicle.empty() ? std::nullopt : std::optional{flags.vehicle}));
     return 0;
   }
   if (!flags.out.empty() && !flags.json) return 0;
-  const Fleet fleet = read_fleet(database.connection());
-  fmt::print("{}", flags.json ? fleet_json(fleet) : drivers::printable(fleet_text(fleet), true));
+  const pages::Fleet all = pages::read_fleet(database.connection());
+  fmt::print(
+      "{}", flags.json ? pages::fleet_json(all) : drivers::printable(pages::fleet_text(all), true));
   return 0;
 }
 
@@ -93,7 +98,7 @@ void add_fleet_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_option("--vehicle", flags->vehicle,
                    "of this car alone: --out writes car.html, segment.csv and month.csv")
       ->excludes(serve);
-  verb->add_option("--csv", flags->csv, "print a table: " + view_names())->excludes(serve);
+  verb->add_option("--csv", flags->csv, "print a table: " + pages::view_names())->excludes(serve);
   verb->add_flag("--json", flags->json, "print totals, norms and outliers as JSON")
       ->excludes(serve);
   verb->add_flag("--force", flags->force, "replace files that exist in --out");
