@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +17,7 @@
 #include "app/run/provenance.hpp"
 #include "app/run/trust.hpp"
 #include "drivers/text/quote.hpp"
+#include "drivers/text/whole_file.hpp"
 
 namespace dampline::app::fleet {
 namespace {
@@ -118,11 +119,12 @@ std::unique_ptr<store::Connection> open(const std::string& where, store::Access 
 bool is_database(const fs::path& where) {
   if (store::is_postgresql(where.string())) return true;
   constexpr std::string_view kMagic = "SQLite format 3";
-  std::array<char, kMagic.size()> head{};
-  std::ifstream stream{where, std::ios::binary};
-  stream.read(head.data(), head.size());
-  return stream.gcount() == static_cast<std::streamsize>(kMagic.size()) &&
-         std::string_view{head.data(), head.size()} == kMagic;
+  std::string head;
+  const auto read = drivers::read_parts(where.string(), [&](std::span<const char> part) {
+    head.append(part.data(), part.size());
+    return head.size() < kMagic.size();
+  });
+  return read.ok() && head.starts_with(kMagic);
 }
 
 Database::Database(const std::string& where, Access access)

@@ -61,7 +61,8 @@ std::unique_ptr<Serving> open_serving(const Config& config) {
 Serving::Serving(const Config& config)
     : config_{config},
       server_{http_settings({config.serve.address, "[serve] address"},
-                            {config.serve.token_file, "[serve] token_file"})},
+                            {config.serve.token_file, "[serve] token_file"},
+                            "[serve] token_file or client_ca_file", read_tls(config.serve))},
       view_{config} {
   where_ = server_.where(config.serve.address);
   wake_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);

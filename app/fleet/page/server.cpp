@@ -157,8 +157,9 @@ class StopSignals {
 void serve_fleet(const FleetServerSettings& settings) {
   constexpr std::chrono::milliseconds kTurn{1000};
   const StopSignals signals;
-  HttpServer server{
-      http_settings({settings.address, "--serve"}, {settings.token_file, "--serve-token-file"})};
+  HttpServer server{http_settings({settings.address, "--serve"},
+                                  {settings.token_file, "--serve-token-file"},
+                                  "--serve-token-file")};
   const auto answers = std::make_shared<Answers>(settings.database);
   server.set("/fleet.css", "text/css; charset=utf-8",
              std::string{page_style()} + std::string{kFleetStyle});
