@@ -226,7 +226,7 @@ Config load_config(const std::filesystem::path& file) {
   for (std::string* path :
        {&config.serve.token_file, &config.serve.cert_file, &config.serve.key_file,
         &config.serve.client_ca_file, &config.alarm.reference, &config.mqtt.password_file,
-        &config.mqtt.ca_file, &config.mqtt.cert_file, &config.mqtt.key_file})
+        &config.mqtt.ca_file, &config.mqtt.cert_file, &config.mqtt.key_file, &config.spool.folder})
     if (!path->empty() && std::filesystem::path{*path}.is_relative())
       *path = (file.parent_path() / *path).string();
   return config;

@@ -119,6 +119,16 @@ struct MqttSettings {
   std::string cert_file, key_file;  ///< of this client
 };
 
+/// The states of a live run's segments on disk, from where `forward` sends them.
+struct SpoolSettings {
+  std::string folder;        ///< empty: none are kept
+  double segment_s{3600.0};  ///< full hours of UTC
+  double every_s{300.0};     ///< between two states of a segment
+  std::string kind{"full"};  ///< or "light"
+  int keep_mib{1024};        ///< of all states; then the oldest sent ones go
+  int reserve_free_mib{16};  ///< stays free on the disk
+};
+
 /// What a live run tells at once.
 struct AlarmSettings {
   std::optional<double> coulomb_below_n;
@@ -160,6 +170,7 @@ struct Config {
   LiveSettings live;
   ServeSettings serve;
   MqttSettings mqtt;
+  SpoolSettings spool;
   AlarmSettings alarm;
   GpioConfig gpio;
   /// Those that the file has; none of a run directory's own run.toml, which has them all.

@@ -37,6 +37,7 @@ constexpr std::array<std::string_view, 2> kMethodWords{"wavelet", "all"};
 constexpr std::array<std::string_view, 3> kMemoryWords{"infinite", "window", "forgetting"};
 constexpr std::array<std::string_view, 3> kLeadingWords{"unknown", "wheelset1", "wheelset2"};
 constexpr std::array<std::string_view, 2> kYesNoWords{"no", "yes"};
+constexpr std::array<std::string_view, 2> kStateKindWords{"full", "light"};
 /// Of the faults, and all of them.
 constexpr auto kFaultWords = [] {
   std::array<std::string_view, kFaultKinds + 1> out{};
@@ -220,6 +221,23 @@ void add_mqtt(MqttSettings& mqtt, Fields& out) {
   out.push_back({"mqtt", "key_file", "and its key", TextField{&mqtt.key_file, {}}});
 }
 
+void add_spool(SpoolSettings& spool, Fields& out) {
+  out.push_back({"spool", "folder",
+                 "states of a live run's segments, for forward and collect; empty: none are kept",
+                 TextField{&spool.folder, {}}});
+  out.push_back({"spool", "segment_s", "length of a segment, from full hours of UTC",
+                 NumberField{&spool.segment_s, {10.0, 86400.0}}});
+  out.push_back({"spool", "every_s", "between two states of a segment, the later one in its place",
+                 NumberField{&spool.every_s, {1.0, 86400.0}}});
+  out.push_back({"spool", "kind", "full, or light: 5 KB without what its own deviations need",
+                 TextField{&spool.kind, kStateKindWords}});
+  out.push_back({"spool", "keep_mib",
+                 "the oldest states go beyond this, those that were sent first",
+                 IntegerField{&spool.keep_mib, {1.0, 1e9}}});
+  out.push_back({"spool", "reserve_free_mib", "stays free on the disk; states that were sent go",
+                 IntegerField{&spool.reserve_free_mib, {0.0, 1e9}}});
+}
+
 void add_alarm(AlarmSettings& alarm, Fields& out) {
   constexpr Limits kForce{1.0, 1e9};
   constexpr Limits kPercent{0.1, 1000.0};
@@ -268,6 +286,7 @@ std::vector<Field> fields(Config& config) {
   add_live(config.live, out);
   add_serve(config.serve, out);
   add_mqtt(config.mqtt, out);
+  add_spool(config.spool, out);
   add_alarm(config.alarm, out);
   add_gpio(config.gpio, out);
   return out;

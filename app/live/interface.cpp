@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <system_error>
+#include <utility>
 
 #include "app/error.hpp"
+#include "app/fleet/spool.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/live/digital_lines.hpp"
 #include "app/live/process.hpp"
@@ -82,6 +85,16 @@ std::vector<InputFile> inputs_of(const Config& config, const std::string& interf
   return out;
 }
 
+/// As [spool] says; null: no segments are kept.
+std::unique_ptr<fleet::Spool> open_spool(const Config& config) {
+  if (config.spool.folder.empty()) return nullptr;
+  if (!config.model.velocity_corner_hz)
+    warn(
+        "[spool]: the sensors' noise chooses the velocity's drift filter, so that states of two "
+        "runs may not merge; [model] velocity_corner_hz states it");
+  return std::make_unique<fleet::Spool>(config.spool, config.record);
+}
+
 void end_mqtt(MqttPublisher& mqtt, RunResult& result) {
   mqtt.end(to_json(result));
   if (const std::uint64_t lost = mqtt.waiting() + mqtt.dropped(); lost > 0)
@@ -107,6 +120,9 @@ Identified identify_live(const Config& config, const std::string& interface,
   live.record = !place.blackbox.empty();
   const auto serving = open_serving(config);
   const auto mqtt = open_mqtt(config);
+  const auto spool = open_spool(config);
+  const std::uint64_t boot = std::uint64_t{std::random_device{}()} << 32U;
+  const std::vector<InputFile> inputs = inputs_of(config, interface);
   LiveOutlets outlets;
   outlets.begin = [&](Recorder& recorder) {
     lines.start(recorder);
@@ -136,11 +152,19 @@ Identified identify_live(const Config& config, const std::string& interface,
     if (mqtt) mqtt->publish(text);
     publish_files(place, result, text);
   };
+  if (spool) {
+    outlets.segment = [&](const SegmentState& state) {
+      SegmentFile file = describe_segment(state, config, inputs, boot);
+      spool->put(file.about.segment, std::move(file.bytes));
+    };
+    outlets.describe = [&](RunResult& result) {
+      for (std::string& text : spool->warnings()) result.warnings.push_back(std::move(text));
+    };
+  }
   outlets.alarm = [&](const AlarmChange& change, double time_s) {
     if (mqtt) mqtt->tell(change, time_s);
   };
-  LiveParts parts{interface, source.get(), sink.get(),
-                  &clock,    run_time,     inputs_of(config, interface)};
+  LiveParts parts{interface, source.get(), sink.get(), &clock, run_time, inputs};
   if (serving) parts.tap = &serving->tap();
   LiveRun run{config, assembler, parts, live, std::move(outlets)};
   Identified found = run.run();

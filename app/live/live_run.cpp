@@ -36,6 +36,7 @@ LiveRun::LiveRun(const Config& config, const AssemblerConfig& assembler, const L
       options_{options},
       outlets_{std::move(outlets)},
       truck_{config, {assembler.channels, screen_of(assembler.channels), assembler.extras}},
+      segments_{outlets_.segment ? std::make_unique<SegmentRun>(config, truck_) : nullptr},
       explainer_{config, truck_},
       acquisition_{std::make_unique<Acquisition>(*parts.source, *parts.clock, truck_,
                                                  acquisition_config(assembler, options))},
@@ -100,6 +101,7 @@ void LiveRun::watch(const Signals& signals) {
       outlets_.turn({state_, alarms_.any_raised(), acquisition_->heartbeats(),
                      acquisition_->samples(), silence_ns_, now_ns});
     publish_when_fresh();
+    pass_segments();
     if (options_.duration_s > 0.0 && now_ns >= end_ns) return;
   }
 }
@@ -119,6 +121,7 @@ void LiveRun::publish_when_fresh() {
   result.origin = origin_of(config_, parts_.inputs, result.origin.recorded);
   result.origin.written_ns = parts_.clock->realtime_ns();
   raise_alarms(result);
+  if (outlets_.describe) outlets_.describe(result);
   if (acquisition_->status().front().any_sample)
     recorder_.newest_events().describe(acquisition_->status().front().view.first_time_ns, result);
   publish(result);
@@ -136,6 +139,10 @@ void LiveRun::raise_alarms(RunResult& result) {
   if (alarm_program_.failures() > 0)
     result.warnings.push_back(fmt::format("[alarm] on_alarm could not be started {} times.",
                                           format_count(alarm_program_.failures())));
+}
+
+void LiveRun::pass_segments() {
+  while (segments_ && segments_->next()) outlets_.segment(segments_->front());
 }
 
 /// A disk that is full or a directory that is gone ends no run: the next version is tried again.
@@ -164,7 +171,11 @@ Identified LiveRun::conclude() {
     throw RunError{fmt::format("{}: not one complete sample: {}", parts_.name,
                                explain_no_sample(status.source, status.assembler, channels_))};
   Identified out;
+  truck_.close();
+  if (segments_) segments_->finish();
+  pass_segments();
   out.result = truck_.finish(status.rate, parts_.name);
+  if (outlets_.describe) outlets_.describe(out.result);
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
   out.result.watched = alarms_.states();

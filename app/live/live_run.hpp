@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <latch>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "app/live/live_explainer.hpp"
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"
+#include "app/live/segments.hpp"
 #include "app/live/status.hpp"
 #include "app/run/provenance.hpp"
 #include "app/serve/tap.hpp"
@@ -56,6 +58,10 @@ struct LiveOutlets {
   std::function<void(Recorder&)> begin{};  ///< the threads run
   /// Every publish_every_s. What it throws is counted and told as an event, and ends no run.
   std::function<void(const RunResult&)> publish{};
+  /// What they have to tell of themselves goes into a result before it is published.
+  std::function<void(RunResult&)> describe{};
+  /// A later state of a segment; absent: there are no segments.
+  std::function<void(const SegmentState&)> segment{};
   /// An alarm was raised or went, at that time of the record.
   std::function<void(const AlarmChange&, double)> alarm{};
   /// Some times a second.
@@ -81,6 +87,7 @@ class LiveRun {
   void publish_when_fresh();
   void publish(const RunResult& result);
   void raise_alarms(RunResult& result);
+  void pass_segments();
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();
   void note(hal::EventKind kind, std::int64_t value);
@@ -91,6 +98,7 @@ class LiveRun {
   LiveOptions options_;
   LiveOutlets outlets_;
   ExplainRun truck_;
+  std::unique_ptr<SegmentRun> segments_;  // null: nobody wants them
   LiveExplainer explainer_;
   std::unique_ptr<Acquisition> acquisition_;
   Recorder recorder_;

@@ -304,7 +304,9 @@ std::uint64_t record_number(const std::string& sha256) {
   return number;
 }
 
-StateAbout about_of(const Config& config, const RunResult& result, const Statistics& sums) {
+}  // namespace
+
+StateAbout state_about(const Config& config, const RunResult& result, const Statistics& sums) {
   const Origin& origin = result.origin;
   StateAbout about;
   about.segment = {origin.vehicle, origin.truck, origin.recorded.start_ns.value_or(0), 0};
@@ -322,12 +324,11 @@ StateAbout about_of(const Config& config, const RunResult& result, const Statist
   return about;
 }
 
-}  // namespace
-
 RunFiles make_files(const Config& config, RunResult result, const std::vector<InputFile>& inputs,
                     const Statistics* sums) {
   result.origin = origin_of(config, inputs, result.origin.recorded);
-  std::string state = sums == nullptr ? "" : encode_state(*sums, about_of(config, result, *sums));
+  std::string state =
+      sums == nullptr ? "" : encode_state(*sums, state_about(config, result, *sums));
   return {std::move(result), write_run_toml(config, inputs), std::move(state), ""};
 }
 

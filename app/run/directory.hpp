@@ -10,6 +10,7 @@
 #include "app/run/disk.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
+#include "app/run/state.hpp"
 #include "app/run/swept.hpp"
 #include "dampline/estimate/statistics.hpp"
 
@@ -71,6 +72,10 @@ struct RunFiles {
   std::string state;       ///< state.dls; empty: there is none
   std::string segments{};  ///< segments.csv of a merge; empty: there is none
 };
+
+/// What the state of a truck's sums is of, as the result says: its origin is stated already.
+[[nodiscard]] StateAbout state_about(const Config& config, const RunResult& result,
+                                     const Statistics& sums);
 
 /// Of a result and what it was made of: the result says where it comes from, run.toml repeats it,
 /// and so does the state of a truck's sums. `inputs`: the source first. `sums`: null: there are

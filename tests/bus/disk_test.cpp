@@ -5,15 +5,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 
+#include "app/run/state.hpp"
 #include "tests/bus/bus.hpp"
 #include "tests/bus/live_program.hpp"
 
@@ -66,6 +69,42 @@ TEST_F(TimeTravelDisk, ThatFillsAndEmptiesCostsPublicationsOnly) {
   EXPECT_THAT(events, HasSubstr(",publish_failed,0,28"));  // ENOSPC
   EXPECT_THAT(events, HasSubstr(",publish_resumed,0,"));
   EXPECT_NEAR(value_of(all, "coulomb"), 8350.0, 400.0);
+}
+
+/// Samples of all segments in a spool; each is read whole.
+std::uint64_t samples_in(const fs::path& spool) {
+  const auto sums = std::make_unique<Statistics>();
+  std::uint64_t out = 0;
+  for (const auto& entry : fs::directory_iterator{spool})
+    if (entry.path().extension() == ".dls") out += app::load_state(entry.path(), *sums).sequence;
+  return out;
+}
+
+TEST_F(TimeTravelDisk, ThatFillsKeepsStatesWaitingAndAClockThatJumpsLosesNone) {
+  const Disk disk{folder_ / "disk"};
+  std::ofstream{folder_ / "car.toml", std::ios::app}
+      << "[record]\nvehicle = \"4711\"\ntruck = \"front\"\n[model]\nvelocity_corner_hz = 0.7\n"
+         "[spool]\nfolder = \"disk/spool\"\nsegment_s = 20.0\nevery_s = 3.0\n"
+         "reserve_free_mib = 0\n";
+  LiveProgram live{folder_, bus_.name(), folder_ / "run", options()};
+  Child sender = send(80.0);
+  std::this_thread::sleep_for(seconds{30});
+  const std::uint64_t before = samples_in(folder_ / "disk/spool");
+  EXPECT_GT(before, 10U * 300U);
+  disk.fill();
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  now.tv_sec += 3600;
+  ::clock_settime(CLOCK_REALTIME, &now);
+  std::this_thread::sleep_for(seconds{25});
+  EXPECT_THAT(read_file(live.run() / "live.json"), HasSubstr("[spool]"));
+  EXPECT_EQ(samples_in(folder_ / "disk/spool"), before) << "what was there stays whole";
+  disk.empty();
+  ASSERT_EQ(sender.wait().status, 0);
+  std::this_thread::sleep_for(seconds{1});
+  const nlohmann::json all = live.stop();
+  EXPECT_EQ(samples_in(folder_ / "disk/spool"), all.at("counts").at("samples"));
+  EXPECT_EQ(all.at("counts").at("samples"), 80 * 300);
 }
 
 TEST_F(TimeTravelDisk, RemovedRunDirectoryIsMadeAgain) {
