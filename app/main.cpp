@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   dampline::app::add_archive_verb(program, action);
   dampline::app::add_collect_verb(program, action);
   dampline::app::add_fleet_verb(program, action);
+  dampline::app::add_forward_verb(program, action);
   dampline::app::add_export_verb(program, action);
   dampline::app::list_verify_verb(program);
   dampline::app::add_inspect_verb(program, action);

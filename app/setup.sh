@@ -57,6 +57,8 @@ sqlite3              reads the database of a fleet
 libpq-dev            keeps them in PostgreSQL, an optional part of the program
 postgresql-15        that server
 python3-yaml         reads the file of its containers
+libnats-dev          states by NATS, an optional part of the program
+nats-server          the hub, and the server on a logger
 "
 readonly bus_packages="
 can-utils            candump, cansend, canplayer

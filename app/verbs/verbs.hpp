@@ -20,6 +20,7 @@ void add_merge_verb(CLI::App& program, std::function<int()>& action);
 void add_archive_verb(CLI::App& program, std::function<int()>& action);
 void add_collect_verb(CLI::App& program, std::function<int()>& action);
 void add_fleet_verb(CLI::App& program, std::function<int()>& action);
+void add_forward_verb(CLI::App& program, std::function<int()>& action);
 void add_export_verb(CLI::App& program, std::function<int()>& action);
 void add_inspect_verb(CLI::App& program, std::function<int()>& action);
 void add_motion_verb(CLI::App& program, std::function<int()>& action);

@@ -80,6 +80,20 @@ TEST(Unit, WithWhatOpensTheNetworkIsRightAndStillWellConfined) {
   EXPECT_EQ(unit().find("AF_INET"), std::string::npos) << "what nobody asked for is closed";
 }
 
+TEST(Unit, OfTheForwarderIsRightAndWellConfined) {
+  if (!has_program("systemd-analyze")) GTEST_SKIP() << "systemd-analyze is not installed";
+  const Folder folder;
+  const std::string text = std::regex_replace(
+      text_of(DAMPLINE_SOURCE_DIR "/app/service/nats/dampline-forward.service"),
+      std::regex{"\nExecStart=[^ ]*"}, "\nExecStart=" DAMPLINE_BINARY_DIR "/dampline");
+  const std::string file = write_instance(folder, text);
+  EXPECT_EQ(shell("systemd-analyze verify --man=no " + file + " 2>&1 | grep dampline").output, "");
+  EXPECT_LT(exposure(file), kMostExposure);
+  const Ended help = shell("'" DAMPLINE_BINARY_DIR "/dampline' forward --help");
+  for (const char* const flag : {"--nats", "--ca", "--cert", "--key"})
+    EXPECT_NE(help.output.find(flag), std::string::npos) << flag;
+}
+
 TEST(Unit, StartsWhatTheProgramUnderstands) {
   std::smatch found;
   const std::string text = unit();
