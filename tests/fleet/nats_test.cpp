@@ -59,7 +59,7 @@ class Nats : public SegmentsTest {
     if (!fleet::has_nats()) GTEST_SKIP() << "built without libnats";
     port_ = 20000 + ::getpid() % 20000;
     ASSERT_EQ(shell("'" DAMPLINE_SOURCE_DIR
-                    "/app/service/nats/certificates' pki hub=localhost,127.0.0.1 collector "
+                    "/app/service/nats/certificates' pki hub=localhost collector "
                     "car-4711 car-4712 depot")
                   .code,
               0);
@@ -76,7 +76,7 @@ class Nats : public SegmentsTest {
   void configure(const std::string& file, const std::string& more, const std::string& to = "") {
     const auto outcome = shell(
         fmt::format("sed -e 's|0.0.0.0:4222|127.0.0.1:{0}|; s|0.0.0.0:7422|127.0.0.1:{1}|; "
-                    "s|\"127.0.0.1:4222\"|\"127.0.0.1:{2}\"|; s|hub.example:7422|127.0.0.1:{1}|; "
+                    "s|\"127.0.0.1:4222\"|\"127.0.0.1:{2}\"|; s|hub.example:7422|localhost:{1}|; "
                     "s|/etc/dampline/nats|pki|; s|/var/lib/nats|js|; {3}' "
                     "'" DAMPLINE_SOURCE_DIR "/app/service/nats/{4}' > {5}",
                     port_, port_ + 1, to == "leaf2.conf" ? port_ + 3 : port_ + 2, more, file,
@@ -153,7 +153,7 @@ TEST_F(Nats, ACarSpeaksForItselfAlone) {
               HasSubstr("Permissions Violation"));
   // Nothing of what the hub keeps can be read, removed or asked for.
   EXPECT_THROW((fleet::NatsReceiver{address_as("car-4711"), "spy", false}), RunError);
-  // Without a certificate, with a stranger's, under another server's name: no connection.
+  // Without a certificate, with a stranger's, to a server of another name: no connection.
   EXPECT_EQ(program_.run("forward own --again --once --nats " + hub() + " --ca pki/ca.pem").code,
             1);
   ASSERT_EQ(shell("'" DAMPLINE_SOURCE_DIR "/app/service/nats/certificates' other car-4711").code,
