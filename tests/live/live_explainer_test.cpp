@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
     Rides, LiveExplaining,
     testing::Values(Ride{"", "", "trusted", 300},
                     Ride{"viscous:coefficient_nspm=120000", "viscous", "trusted", 120},
-                    Ride{"time_drift", "time_drift", "model_incomplete", 300},
+                    Ride{"time_drift", "time_drift", "trusted", 300},
                     Ride{"", "", "data_faulty", 120,
                          [](Sample& s) { s.accel_mps2[2] = s.accel_mps2[1]; }}),
     [](const auto& ride) {
