@@ -46,7 +46,7 @@ void Sensors::send_instant() {
 void Sensors::run(std::chrono::duration<double> time) {
   const auto instants = static_cast<std::int64_t>(time.count() * kRateHz);
   const auto now = std::chrono::steady_clock::now();
-  if (instant_ == 0 || now - due_ > std::chrono::seconds{1}) due_ = now;  // they did not run
+  if (instant_ == 0 || now - due_ > std::chrono::milliseconds{50}) due_ = now;  // they did not run
   for (std::int64_t i = 0; i < instants; i += batch) {
     due_ += batch * kPeriod;
     std::this_thread::sleep_until(due_);

@@ -40,7 +40,7 @@ class TimeTravelWeek : public testing::Test {
     std::ofstream{folder_ / "car.toml"}
         << "[blackbox]\nrotate_mib = 4\nkeep_mib = 24\nreserve_free_mib = 0\n";
     sensors_.motion = [this] { return simulation_.next().counts; };
-    sensors_.batch = 10;
+    sensors_.batch = 4;
   }
 
   [[nodiscard]] std::string run_name() const { return "car.run." + std::to_string(lives_); }
@@ -81,9 +81,9 @@ class TimeTravelWeek : public testing::Test {
     drive(2.0);
   }
   // What the node did not make while it was off may be taken for lost: no counter tells, and where
-  // it goes on is known by the time of its frames, which come ten at once.
+  // it goes on is known by the time of its frames, which come four at once.
   void node_restarts() {
-    const auto instants = static_cast<std::int64_t>(between(3.0, 900.0));
+    const auto instants = static_cast<std::int64_t>(between(3.0, 300.0));
     sensors_.restart_node(random_() % kChannels, instants);
     off_ += static_cast<std::uint64_t>(instants);
     unsure_ += 50;

@@ -127,7 +127,9 @@ TEST(CandumpLine, TakesTheSixteenLengthsOfCanFdAndNoOther) {
     const Parsed line = parse("(1.000000) can0 123##0" + std::string(2 * length, 'F'));
     const bool good = std::find(allowed.begin(), allowed.end(), length) != allowed.end();
     EXPECT_EQ(line.expected.empty(), good) << length;
-    if (good) EXPECT_EQ(line.frame.length, length);
+    if (good) {
+      EXPECT_EQ(line.frame.length, length);
+    }
   }
 }
 

@@ -257,8 +257,12 @@ TEST(Assembler, RefusesAConfigurationThatCannotWork) {
   const Nodes nodes;
   AssemblerConfig config = nodes.config();
   EXPECT_TRUE(SampleAssembler::check(config).ok());
-  config.sample_rate_hz = std::nan("");
-  EXPECT_FALSE(SampleAssembler::check(config).ok());
+  for (const double rate_hz : {std::nan(""), 0.0, -300.0, 1.1e6}) {
+    config.sample_rate_hz = rate_hz;
+    EXPECT_FALSE(SampleAssembler::check(config).ok()) << rate_hz;
+  }
+  config.sample_rate_hz = 1e6;
+  EXPECT_TRUE(SampleAssembler::check(config).ok());
   config = nodes.config();
   config.channels[1].id = 0x800;
   EXPECT_FALSE(SampleAssembler::check(config).ok());

@@ -148,6 +148,10 @@ TEST(SampleScreen, PassesOnWhatTheAssemblerSaw) {
   const auto all = screened({}, samples);
   ASSERT_EQ(with(all, Verdict::kSaturated), std::vector<std::size_t>{120});
   EXPECT_EQ(all[120].channels, 0b101);
+  samples[130].spoilt = true;
+  const auto spoilt = screened({}, samples);
+  ASSERT_EQ(with(spoilt, Verdict::kSpoilt), std::vector<std::size_t>{130});
+  EXPECT_EQ(spoilt[130].channels, 0b111);
 }
 
 TEST(SampleScreen, MarksWhatIsNotANumberAboveAllElse) {
