@@ -162,12 +162,24 @@ SpectrumSums noisy_block(double noise1, double noise2, double not_common) {
   return sums;
 }
 
-BlockFigures figures_of(const SpectrumSums& sums) {
+BlockSurvey surveyed(const SpectrumSums& sums) {
   BlockSurvey survey{300.0, {}};
   survey.start(sums);
   for (int calls = 0; !survey.advance(); ++calls)
     if (calls > 10'000) throw std::runtime_error{"never done"};
-  return survey.figures();
+  return survey;
+}
+
+BlockFigures figures_of(const SpectrumSums& sums) { return surveyed(sums).figures(); }
+
+TEST(BlockSurvey, ABinWeighsByItsCoherence) {
+  const SpectrumSums all = noisy_block(0.0, 0.0, 0.0);
+  const SpectrumSums half = noisy_block(0.0, 0.0, 1.0 - std::sqrt(0.5));
+  const double most = surveyed(all).weights()[100];
+  EXPECT_GT(most, 10.0);
+  EXPECT_NEAR(surveyed(half).weights()[100], 1.0, 1e-9);
+  EXPECT_EQ(surveyed(all).weights()[200], 0.0) << "above 90 Hz none counts";
+  EXPECT_EQ(surveyed(all).figures().coherent_share, 1.0);
 }
 
 // Where noise is in the middle of the band as at its end, it is motion that is not shared.
