@@ -59,5 +59,16 @@ TEST(TimeTravelProgram, AccountsForAllFramesOfARunWithManyFaults) {
   EXPECT_THAT(read_file(live.run() / "events.csv"), HasSubstr("3600"));
 }
 
+#if defined(__x86_64__)
+
+// Some of what tests/fault/live_calls does with every system call.
+TEST(TimeTravelProgram, EndsWellOrSaysWhyWhateverCallFails) {
+  const VirtualCan bus;
+  run({DAMPLINE_SOURCE_DIR "/tests/fault/calls", "live=" + bus.name(), "--sample", "3", "--jobs",
+       "1", "--build", DAMPLINE_BINARY_DIR});
+}
+
+#endif
+
 }  // namespace
 }  // namespace dampline::bus

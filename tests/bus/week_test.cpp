@@ -172,7 +172,7 @@ class TimeTravelWeek : public testing::Test {
 };
 
 TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
-  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.15) * 3600.0;
+  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.05) * 3600.0;
   using Act = void (TimeTravelWeek::*)();
   struct Rule {
     const char* name;
