@@ -58,11 +58,11 @@ class Nats : public SegmentsTest {
       GTEST_SKIP() << "no nats-server or openssl";
     if (!fleet::has_nats()) GTEST_SKIP() << "built without libnats";
     port_ = 20000 + ::getpid() % 20000;
-    ASSERT_EQ(shell("'" DAMPLINE_SOURCE_DIR
-                    "/app/service/nats/certificates' pki hub=localhost collector "
-                    "car-4711 car-4712 depot")
-                  .code,
-              0);
+    ASSERT_EQ(
+        shell("'" DAMPLINE_SOURCE_DIR "/app/service/nats/certificates' pki hub=localhost collector "
+              "car-4711 car-4712 depot")
+            .code,
+        0);
     configure("hub.conf", "");
     configure("cars.conf", "");
     configure("leaf.conf", "");
@@ -203,6 +203,7 @@ TEST_F(Nats, AKilledCollectorGoesOn) {
 }
 
 TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
+  constexpr int kHours = 40;
   SpoolSettings settings;
   settings.folder = program_.path("spool").string();
   settings.keep_mib = 1;
@@ -210,7 +211,7 @@ TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
   fleet::Spool spool{settings, {"4711", "front", "", ""}};
   stop("hub");
   fleet::Forwarder forwarder{{settings.folder}, address_as("car-4711"), false};
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < kHours; ++i) {
     const SegmentFile state = of(states().back(), "4711", i);
     spool.put(state.about.segment, state.bytes);
     if (i % 7 == 0) {
@@ -220,7 +221,7 @@ TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
   EXPECT_GT(spool.health().dropped, 0U);
   start("hub", port_);
   EXPECT_TRUE(comes([&] { return forwarder.round(kPatience).error.empty(); }));
-  EXPECT_EQ(collect().at("segments"), 20 - spool.health().dropped);
+  EXPECT_EQ(collect().at("segments"), kHours - spool.health().dropped);
   EXPECT_TRUE(merged_bytes("spool") == merged_bytes("fleet.sqlite"));
 }
 
