@@ -268,6 +268,10 @@ inline std::vector<GuardCase> sound_cases() {
   cases.push_back({"wheels that differ by 1-10 %", {}, [](R& r, X& x) {
                      r.simulation.incoherent_power = between(x, 0.01, 0.1);
                    }});
+  cases.push_back({"jitter 0.1-0.4 ms, stamped", {}, [](R& r, X& x) {
+                     r.faults.jitter_s.fill(between(x, 1e-4, 4e-4));
+                     r.faults.jitter_is_stamped = true;
+                   }});
   cases.push_back({"rail joints", {}, [](R& r, X& x) {
                      r.simulation.impulses.joint_depth_m = between(x, 0.1e-3, 0.5e-3);
                    }});

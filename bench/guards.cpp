@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/guard_cases.hpp"
+#include "dampline/sample/sample_placer.hpp"
 
 namespace {
 
@@ -31,8 +32,11 @@ std::vector<Fault> faults_of(const GuardRecord& record, GuardInputs& inputs, boo
   sim::FaultyRecord source{record.simulation, record.faults};
   const auto samples = static_cast<std::int64_t>(record.length_s * sim::kSampleRateHz);
   BlockFigures last{};
+  SamplePlacer placer{record.guard.sample_rate_hz};
   for (std::int64_t i = 0; i < samples; ++i) {
-    guard->update(sim::to_sample(source.next()));
+    static_cast<void>(source.next());
+    placer.push(source.stamped());
+    for (Sample taken, placed; placer.pop(taken, placed);) guard->update(placed, taken.accel_mps2);
     const BlockFigures now = guard->block();
     const bool print = verbose && now.last_tick != last.last_tick;
     const BlockFigures ended = last;

@@ -207,8 +207,10 @@ double FaultyRecord::delay_samples(std::size_t channel, double time_s) const {
 // Whole samples are taken as they are; between them a sinc of 48 taps under a Hann window.
 double FaultyRecord::delayed(std::size_t channel, double time_s) {
   double place = static_cast<double>(source_) - delay_samples(channel, time_s);
-  if (faults_.jitter_s[channel] > 0.0)
-    place += faults_.jitter_s[channel] * kSampleRateHz * random_.normal();
+  if (faults_.jitter_s[channel] > 0.0) {
+    late_s_[channel] = faults_.jitter_s[channel] * random_.normal();
+    place += late_s_[channel] * kSampleRateHz;
+  }
   const double whole = std::floor(place + 0.5);
   const auto n = static_cast<std::int64_t>(whole);
   const double u = place - whole;
@@ -289,6 +291,16 @@ SimulatedSample FaultyRecord::next() {
   last_.tick = tick_++;
   last_.time_s = static_cast<double>(last_.tick) / kSampleRateHz;
   return last_;
+}
+
+Sample FaultyRecord::stamped() const {
+  Sample out = to_sample(last_);
+  if (!faults_.jitter_is_stamped) return out;
+  out.time_ns += std::llround(1e9 * late_s_[0]);
+  for (std::size_t w = 0; w < 2; ++w)
+    out.wheelset_after_us[w] =
+        static_cast<std::int16_t>(std::lround(1e6 * (late_s_[w + 1] - late_s_[0])));
+  return out;
 }
 
 }  // namespace dampline::sim

@@ -72,6 +72,7 @@ struct RecordFaultConfig {
   double end_s{180.0};
   std::array<double, kChannels> delay_step_s{};     ///< later (positive) from start_s on
   std::array<double, kChannels> jitter_s{};         ///< of each sampling instant, rms
+  bool jitter_is_stamped{false};                    ///< in FaultyRecord::stamped()
   std::array<double, kChannels> clock_drift_ppm{};  ///< delay that grows over the whole record
   std::array<int, kChannels> lost_samples{};        ///< at start_s, in this channel only
   std::array<int, kChannels> repeated_samples{};    ///< at start_s, in this channel only
@@ -98,6 +99,8 @@ class FaultyRecord {
  public:
   FaultyRecord(const SimulationConfig& simulation, const RecordFaultConfig& faults);
   [[nodiscard]] SimulatedSample next();
+  /// The newest as a sample, with its channels' own stamps.
+  [[nodiscard]] Sample stamped() const;
 
  private:
   static constexpr std::int64_t kHistory = 512;
@@ -124,6 +127,7 @@ class FaultyRecord {
   int repeats_left_{0};
   bool repeated_{false};
   SimulatedSample last_{};
+  std::array<double, kChannels> late_s_{};  // that the newest was taken later, by jitter
 };
 
 }  // namespace dampline::sim

@@ -55,7 +55,8 @@ namespace {
 
 constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::uint64_t kFewHits = 20;
-constexpr double kShare = 2e-4;  // coarse codes repeat their largest value now and then
+constexpr double kShare = 2e-4;     // coarse codes repeat their largest value now and then
+constexpr std::uint64_t kPile = 2;  // times the hits of the next value
 
 }  // namespace
 
@@ -65,7 +66,8 @@ std::vector<std::string> ClippingWatch::warnings() const {
       std::max(kFewHits, static_cast<std::uint64_t>(kShare * static_cast<double>(samples_)));
   for (std::size_t c = 0; c < kChannels; ++c) {
     const Extreme& worst = high_[c].hits >= low_[c].hits ? high_[c] : low_[c];
-    if (worst.hits < limit || worst.value == -(&worst == &high_[c] ? low_[c] : high_[c]).value)
+    if (worst.hits < std::max(limit, kPile * worst.next_hits) ||
+        worst.value == -(&worst == &high_[c] ? low_[c] : high_[c]).value)
       continue;
     out.push_back(
         fmt::format("Channel {0} seems to clip: {1} samples stand at its extreme, {2:.4g} "

@@ -111,8 +111,8 @@ class MotionExcerpt {
 };
 
 /// Notices channels that clip where nobody stated a full scale: motion reaches its largest value
-/// once or twice, a limiter again and again. That is known only at the end, so it makes a warning,
-/// not an exclusion.
+/// once or twice, or, of coarse codes, less often than the next; a limiter again and again. That is
+/// known only at the end, so it makes a warning, not an exclusion.
 class ClippingWatch {
  public:
   void take(const Sample& sample) noexcept {
@@ -130,13 +130,22 @@ class ClippingWatch {
   struct Extreme {
     double value{-std::numeric_limits<double>::infinity()};
     std::uint64_t hits{0};
+    double next_value{-std::numeric_limits<double>::infinity()};  // the largest below it
+    std::uint64_t next_hits{0};
     /// A value that is no number compares false and leaves everything as it is.
     void take(double x) noexcept {
       if (x > value) {
+        next_value = value;
+        next_hits = hits;
         value = x;
         hits = 1;
       } else if (x == value) {
         ++hits;
+      } else if (x > next_value) {
+        next_value = x;
+        next_hits = 1;
+      } else if (x == next_value) {
+        ++next_hits;
       }
     }
   };

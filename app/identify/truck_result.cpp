@@ -202,6 +202,8 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   out.values_replaced = view.repairs.replaced;
   out.samples_spoilt = view.repairs.spoilt;
   out.values_bridged = view.repairs.bridged.values;
+  const auto& placed_s = view.repairs.placed.off_s;
+  out.placed_s = *std::max_element(placed_s.begin(), placed_s.end());
   const auto wrong_rate = [](const Fault& f) { return f.kind == FaultKind::kWrongSampleRate; };
   const auto list = view.list();
   out.lasting = effect::forbids_naming(view) || std::any_of(list.begin(), list.end(), wrong_rate);

@@ -277,6 +277,11 @@ std::string fault_section(const RunResult& result) {
         "<p class=\"note\">{} single values were missing and were put in from what the channel did "
         "around them.</p>\n",
         format_count(faults.values_bridged));
+  if (faults.placed_s > 0.0)
+    out += fmt::format(
+        "<p class=\"note\">Samples were taken at uneven times ({:.2g} ms rms) and were put at even "
+        "ones by their own stamps.</p>\n",
+        1e3 * faults.placed_s);
   if (!truck) return out;
   return out + fmt::format(
                    "<p class=\"note\">Input, no faults: {} impacts (rail joints, wheel flats), {} "

@@ -177,6 +177,7 @@ void list_members(Archive&& a, Of<DataFaults> auto& f) {
       in("values_replaced", f.values_replaced);
       in("samples_left_out", f.samples_spoilt);
       if (in.has("values_bridged", true)) in("values_bridged", f.values_bridged);
+      if (in.has("placed_s", f.placed_s > 0.0)) in("placed_s", f.placed_s);
     });
   if (a.has("alarms", true)) a("alarms", f.alarms);
   constexpr AlarmFigures kFigures;

@@ -149,7 +149,8 @@ struct DataFaults {
   std::uint64_t values_replaced{0};  ///< single wrong samples, by what their neighbours say
   std::uint64_t samples_spoilt{0};   ///< left out because of a fault that passed
   std::uint64_t values_bridged{0};   ///< that were missing, put in
-  bool lasting{false};               ///< nothing was done about one that changes the numbers
+  double placed_s{0.0};  ///< samples were put at their stamps, which are off even times by this rms
+  bool lasting{false};   ///< nothing was done about one that changes the numbers
   std::optional<DriftFinding> drift;
   std::vector<AlarmFinding> alarms;  ///< the newest
 };

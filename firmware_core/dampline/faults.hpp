@@ -98,11 +98,17 @@ struct BridgeFigures {
   std::array<double, kChannels> noise_mps2{};  ///< that they make of all samples, rms
 };
 
+/// Channels whose samples were put at the times of their own stamps.
+struct PlacedFigures {
+  std::array<double, kChannels> off_s{};  ///< what they were off even times, rms; 0: none was
+};
+
 /// What was done about faults that passed. Monotone.
 struct RepairCounts {
   std::uint64_t replaced{0};  ///< values of a channel, by what their neighbours say
   std::uint64_t spoilt{0};    ///< samples that were left out
   BridgeFigures bridged;
+  PlacedFigures placed;
 };
 
 /// How much more the frame moves with the wheelsets below the suspension's resonance than it did

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The way of one frame, in the order in which it flows:
 //
-//   push(frame) -> assembler -> bridge -> guard -> judgement delay -> estimator (screen, motion,
-//   rows, sums)
+//   push(frame) -> assembler -> bridge -> placer -> guard -> judgement delay -> estimator (screen,
+//   motion, rows, sums)
 //                                                        -> { effects | phase | density | alarms }
 //   snapshot(), faults(), alarms(), statistics(), explanation(): what is known, at any moment
 //
@@ -28,6 +28,7 @@
 #include "dampline/sample.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "dampline/sample/hole_bridge.hpp"
+#include "dampline/sample/sample_placer.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {
@@ -97,6 +98,7 @@ class BasicIdentifier {
       : config_{config},
         estimator_{config.estimator},
         assembler_{frames_config(config)},
+        placer_{config.estimator.sample_rate_hz},
         guard_{guard_config(config)},
         delay_{delay_samples(config)},
         density_{density_config(config.estimator)},
@@ -115,7 +117,7 @@ class BasicIdentifier {
   void push(const Sample& sample, Observer& observer = kNobody) {
     if constexpr (kParts.guards) {
       bridge_.push(sample);
-      judge(observer);
+      bridge(observer);
     } else {
       observer.taken(sample);
       use(sample, observer);
@@ -133,6 +135,8 @@ class BasicIdentifier {
     if constexpr (kParts.frames) flush(observer);
     if constexpr (kParts.guards) {
       bridge_.finish();
+      bridge(observer);
+      placer_.finish();
       judge(observer);
       guard_.finish();
       for (Sample due; delay_.drain(guard_, due);) use(due, observer);
@@ -155,6 +159,7 @@ class BasicIdentifier {
     out.inputs = guard_.inputs();
     out.repairs = delay_.counts();
     out.repairs.bridged = bridge_.figures();
+    out.repairs.placed = placer_.figures();
     out.frame_follow = guard_.frame_follow();
     return out;
   }
@@ -199,12 +204,19 @@ class BasicIdentifier {
     for (Sample sample; assembler_.pop(sample);) push(sample, observer);
   }
   template <class Observer>
-  void judge(Observer& observer) {
+  void bridge(Observer& observer) {
     for (Sample sample; bridge_.pop(sample);) {
       observer.taken(sample);
       if (sample.bridged != 0) guard_.set_bridged(bridge_.figures());
-      guard_.update(sample);
-      if (Sample due; delay_.push(sample, guard_, due)) use(due, observer);
+      placer_.push(sample);
+      judge(observer);
+    }
+  }
+  template <class Observer>
+  void judge(Observer& observer) {
+    for (Sample taken, placed; placer_.pop(taken, placed);) {
+      guard_.update(placed, taken.accel_mps2);
+      if (Sample due; delay_.push(placed, guard_, due)) use(due, observer);
     }
   }
   template <class Observer>
@@ -224,6 +236,7 @@ class BasicIdentifier {
   EstimatorOfIt estimator_;
   If<kParts.frames, SampleAssembler> assembler_;
   If<kParts.guards, HoleBridge> bridge_{};
+  If<kParts.guards, SamplePlacer> placer_;
   If<kParts.guards, Guard> guard_;
   If<kParts.guards, JudgementDelay> delay_;
   If<kParts.densities, FokkerPlanck> density_;

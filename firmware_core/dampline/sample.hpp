@@ -29,7 +29,11 @@ struct Sample {
   bool lost{false};           ///< a channel or more of this instant never came
   std::uint8_t bridged{0};    ///< bit c set: channel c had no value and was put in; then the extras
   std::array<float, kExtras> extra_mps2{};  ///< indexed by Extra; 0 where there is none
+  /// By which the wheelsets' own stamps are later than time_ns, where channels have their own.
+  std::array<std::int16_t, 2> wheelset_after_us{};
 };
+
+static_assert(sizeof(Sample) == 56, "samples are held by the thousand");
 
 [[nodiscard]] inline bool is_bridged(const Sample& sample, std::size_t channel) noexcept {
   return (std::uint32_t{sample.bridged} >> channel & 1U) != 0;

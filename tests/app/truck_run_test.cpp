@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "app/error.hpp"
 #include "app/identify/collected.hpp"
@@ -151,6 +153,25 @@ TEST(ConvergenceHistory, StaysBoundedAndCoversTheWholeRecord) {
   EXPECT_LT(history.rows().front().tick, 300'000);
   EXPECT_GT(history.rows().back().tick, 9'800'000);
   EXPECT_LT(levels, 1500) << "levels cost a fraction of a millisecond each";
+}
+
+// Steps of 0.4 m/s^2 under a motion of 0.3 m/s^2: the largest code comes often, the next more
+// often.
+TEST(ClippingWatch, TakesCoarseCodesForNoClipping) {
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> motion_mps2{0.0, 0.3};
+  ClippingWatch coarse;
+  ClippingWatch clips;
+  for (int i = 0; i < 90'000; ++i) {
+    Sample sample{.tick = i};
+    sample.accel_mps2[0] = 0.4 * std::clamp(std::round(motion_mps2(random) / 0.4), -2.0, 2.0);
+    coarse.take(sample);
+    sample.accel_mps2[0] = std::min(std::round(motion_mps2(random) / 0.01), 70.0);
+    clips.take(sample);
+  }
+  EXPECT_THAT(coarse.warnings(), testing::IsEmpty());
+  ASSERT_EQ(clips.warnings().size(), 1U);
+  EXPECT_THAT(clips.warnings().front(), HasSubstr("frame seems to clip"));
 }
 
 TEST(ExcludedList, JoinsNeighboursAndStaysBounded) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -293,6 +294,21 @@ TEST(Guard, RefusesWhatCannotBe) {
   config = {};
   config.step_mps2[1] = -1.0;
   EXPECT_FALSE(Guard::check(config).ok());
+}
+
+// Codes get their unit when the first ten seconds are over.
+TEST(Guard, MeasuresSpikesOfTheFirstSecondsInTheirOwnUnit) {
+  const auto guard = run([](Trial& s) {
+    s.step_is_declared = false;
+    s.length_s = 40.0;
+    s.faults.spikes[1] = 8;
+    s.faults.record_s = 9.0;
+  });
+  ASSERT_THAT(names(*guard), Contains("spikes wheelset1"));
+  for (const Fault& fault : guard->faults())
+    if (fault.kind == FaultKind::kSpikes) {
+      EXPECT_NEAR(std::abs(fault.size), 20.0, 8.0);
+    }
 }
 
 TEST(Guard, NamesJitterAndItsSize) {

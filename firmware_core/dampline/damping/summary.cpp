@@ -16,6 +16,9 @@ namespace {
 constexpr double kCoulombFloor = 0.0010;
 constexpr double kStiffnessFloor = 0.0030;
 constexpr double kViscousFloor = 0.0030;  // of Fc / v_rms
+// Of a curve: the velocity's own error bends it, the more the nearer its width.
+constexpr double kCurveFloor = 0.0025;
+constexpr double kWidthShare = 0.03;  // at the width
 // The 32 Hz scale fits between sticks and sharpens the friction law, but knows nothing of
 // stiffness.
 constexpr ScaleMask kAllScales{true, true, true, true, true};
@@ -126,9 +129,10 @@ void fill_curve(const Context<Entries>& c, const LawProfile<true>& law, Snapshot
   for (std::size_t i = 0; i < kCurveSegments; ++i) {
     const double v_mps = c.header.curve_nodes_mps[i];
     const Estimate f = curve.force(v_mps, law.width_mps(), c.header.curve_nodes_mps);
+    const double floor = floored(kCurveFloor, kWidthShare * law.width_mps() / v_mps);
     out.curve[i] = {.velocity_mps = v_mps,
                     .force_n = c.mass_kg * f.value,
-                    .std_n = c.mass_kg * floored(c.blocks_factor * f.std, kCoulombFloor * f.value),
+                    .std_n = c.mass_kg * floored(c.blocks_factor * f.std, floor * f.value),
                     .samples = c.header.velocity.positive[i]};
     out.samples_negative[i] = c.header.velocity.negative[i];
   }

@@ -60,7 +60,7 @@ Guard::Guard(const GuardConfig& config) noexcept
   }
 }
 
-void Guard::update(const Sample& sample) noexcept {
+void Guard::update(const Sample& sample, const std::array<double, kChannels>& taken_mps2) noexcept {
   if (any_ && sample.tick <= last_.tick) return;
   Codes codes{};
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -68,8 +68,8 @@ void Guard::update(const Sample& sample) noexcept {
       ++no_numbers_;
       return;
     }
-    if (!knows_steps_ && !is_bridged(sample, c)) steps_[c].update(sample.accel_mps2[c]);
-    codes[c] = std::llround(sample.accel_mps2[c] / unit(c));
+    if (!knows_steps_ && !is_bridged(sample, c)) steps_[c].update(taken_mps2[c]);
+    codes[c] = std::llround(taken_mps2[c] / unit(c));
   }
   if (!any_) {
     block_start_ = sample.tick;
@@ -278,7 +278,8 @@ void Guard::take_strikes() noexcept {
     tally.wrong += 1.0;
     wrong_[wrong_pushed_++ % wrong_.size()] = {strike.tick, c};
     log_.spoil(FaultKind::kSpikes, channel_of(c), strike.tick - 1, strike.tick + 1);
-    if (tally.count < kPending) tally.pending[tally.count++] = strike;
+    if (tally.count < kPending)
+      tally.pending[tally.count++] = {strike.tick, static_cast<double>(strike.height) * unit(c)};
   }
 }
 
@@ -305,9 +306,9 @@ void Guard::judge_spikes(std::size_t channel) noexcept {
     tally.count = 0;
   } else if (tally.wrong >= kFewSpikes) {
     for (std::size_t i = 0; i < tally.count; ++i) {
-      const Strike& strike = tally.pending[i];
-      log_.report(FaultKind::kSpikes, channel_of(channel), log_.seconds(strike.tick),
-                  static_cast<double>(strike.height) * unit(channel));
+      const Spike& spike = tally.pending[i];
+      log_.report(FaultKind::kSpikes, channel_of(channel), log_.seconds(spike.tick),
+                  spike.height_mps2);
     }
     tally.count = 0;
   }

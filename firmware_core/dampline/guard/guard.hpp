@@ -39,7 +39,10 @@ class Guard {
   explicit Guard(const GuardConfig& config) noexcept;
 
   /// Ticks must increase; a sample that does not is ignored.
-  void update(const Sample& sample) noexcept;
+  void update(const Sample& sample) noexcept { update(sample, sample.accel_mps2); }
+  /// The same of a sample that was put at an even time; `taken_mps2`: as its sensors sent it, by
+  /// whose codes some faults are told.
+  void update(const Sample& sample, const std::array<double, kChannels>& taken_mps2) noexcept;
   /// What was put in so far where values were missing: no noise of a sensor.
   void set_bridged(const BridgeFigures& figures) noexcept { spectral_.set_bridged(figures); }
   /// End of the record: judges what is left of the open block.
@@ -79,9 +82,12 @@ class Guard {
     bool reported{false};
   };
   static constexpr std::size_t kPending = 32;
+  struct Spike {
+    std::int64_t tick{0};
+    double height_mps2{0.0};  // codes may get another unit before it is told
+  };
   struct SpikeTally {
-    std::array<Strike, kPending>
-        pending{};  // of the open block and the ones before three are there
+    std::array<Spike, kPending> pending{};  // of the open block and the ones before three are there
     std::size_t count{0};
     double wrong{0.0};  // all so far, what is long ago counts less
     double impacts{0.0};

@@ -7,6 +7,15 @@
 #include <type_traits>
 
 namespace dampline {
+namespace {
+
+/// As near as 16 bits can.
+std::int16_t microseconds(std::int64_t time_ns) noexcept {
+  constexpr std::int64_t kMostNs = 32'767'000;
+  return static_cast<std::int16_t>(std::clamp(time_ns, -kMostNs, kMostNs) / 1000);
+}
+
+}  // namespace
 
 Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) noexcept {
   if (!(config.sample_rate_hz > 0.0 && config.sample_rate_hz <= 1e6)) return Errc::kInvalidConfig;
@@ -66,6 +75,8 @@ bool SampleAssembler::write(Count lanes, const Readings& readings, bool lost) no
     sample.accel_mps2[c] = readings[c]->accel_mps2;
     saturated |= unsigned{readings[c]->saturated} << c;
   }
+  for (std::size_t w = 0; w < 2; ++w)
+    sample.wheelset_after_us[w] = microseconds(readings[w + 1]->time_ns - sample.time_ns);
   for (std::size_t c = kChannels; c < lanes; ++c) {
     sample.extra_mps2[extra_of_[c - kChannels]] = static_cast<float>(readings[c]->accel_mps2);
     saturated |= unsigned{readings[c]->saturated} << c;

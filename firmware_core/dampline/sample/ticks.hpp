@@ -11,12 +11,14 @@ namespace dampline {
 
 /// Straight line of time over tick that follows a channel: predicts at which tick a frame is due.
 /// A g-h filter with the gains of a growing least-squares line (Kalata; Benedict and Bordner),
-/// which stop shrinking at kMemory frames. A single frame moves the line by half a tick at most.
+/// which stop shrinking at a memory's frames. A single frame moves the line by half a tick at most.
 class TickLine {
  public:
   /// The period stays within [1 - period_range, 1 / (1 - period_range)] of the nominal one.
-  TickLine(double rate_hz, double period_range) noexcept
-      : period_ns_{1e9 / rate_hz},
+  /// `memory`: frames.
+  TickLine(double rate_hz, double period_range, double memory = kMemory) noexcept
+      : memory_{memory},
+        period_ns_{1e9 / rate_hz},
         shortest_ns_{period_ns_ * (1.0 - period_range)},
         longest_ns_{period_ns_ / (1.0 - period_range)} {}
 
@@ -38,7 +40,7 @@ class TickLine {
     const double predicted_ns = phase_ns_ + steps * period_ns_;
     const double off_ns = static_cast<double>(time_ns - time_ns_) - predicted_ns;
     const double error_ns = limited(off_ns);
-    if (frames_ < kMemory) set_gains(frames_ + 1.0);
+    if (frames_ < memory_) set_gains(frames_ + 1.0);
     correct(predicted_ns + phase_gain_ * error_ns, period_gain_ * error_ns / steps);
     tick_ = tick;
   }
@@ -50,7 +52,7 @@ class TickLine {
     const double off_ns = static_cast<double>(time_ns - time_ns_) - predicted_ns;
     if (!(std::abs(off_ns) < ticks * period_ns_)) return false;
     const double error_ns = limited(off_ns);
-    if (frames_ < kMemory) set_gains(frames_ + 1.0);
+    if (frames_ < memory_) set_gains(frames_ + 1.0);
     correct(predicted_ns + phase_gain_ * error_ns, period_gain_ * error_ns);
     ++tick_;
     return true;
@@ -79,6 +81,7 @@ class TickLine {
 
   static constexpr double kMemory = 128.0;
   static constexpr double kPrior = 16.0;  // the nominal period counts as so many frames
+  double memory_;
   std::int64_t tick_{0};
   std::int64_t time_ns_{0};
   double phase_ns_{0.0};  // below one nanosecond; keeps what time_ns_ cannot
