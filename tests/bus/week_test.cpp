@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Some minutes of what tests/bus/week does for seven days: a car that drives while the link goes,
+// What tests/bus/week does for seven days: a car that drives while the link goes,
 // the clock steps, nodes restart, frames are lost and doubled, the disk fills, and the program is
 // stopped, ended and killed, at moments that a seed draws. The sensors know what they made.
 #include <gmock/gmock.h>
@@ -172,7 +172,8 @@ class TimeTravelWeek : public testing::Test {
 };
 
 TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
-  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.05) * 3600.0;
+  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.0) * 3600.0;
+  if (end_s == 0.0) GTEST_SKIP() << "tests/bus/week runs it";
   using Act = void (TimeTravelWeek::*)();
   struct Rule {
     const char* name;
