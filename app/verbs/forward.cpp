@@ -31,7 +31,8 @@ struct ForwardFlags {
 
 constexpr std::chrono::milliseconds kPatience{10'000};  // for one state, on a slow link
 
-void tell(const ForwardFlags& flags, const fleet::Forwarder::Round& round, std::string& told) {
+void tell_round(const ForwardFlags& flags, const fleet::Forwarder::Round& round,
+                std::string& told) {
   for (const fleet::LeftOut& state : round.refused) warn("refused: " + state.reason);
   // An outage is told once, and its end.
   if (round.error != told && !round.error.empty())
@@ -52,7 +53,7 @@ int forward(const ForwardFlags& flags) {
     if (flags.once && !round.error.empty())
       throw RunError{
           fmt::format("{}: {} states wait: {}", flags.address.url, round.left, round.error)};
-    tell(flags, round, told);
+    tell_round(flags, round, told);
     if (flags.once) return 0;
     const auto next =
         std::chrono::steady_clock::now() + std::chrono::duration<double>{flags.every_s};
