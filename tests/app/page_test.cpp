@@ -117,7 +117,7 @@ TEST(Page, SaysThatDeviationsAreLowerBounds) {
 TEST(Page, StandsForAResultThatHasOnlyParameters) {
   RunResult result;
   result.kind = "rig";
-  result.headline = "h";
+  result.headline = std::string{"h"};
   const std::string page = make_page(result, {}, "");
   EXPECT_THAT(page, AllOf(HasSubstr("Nothing was left out"), HasSubstr("</html>")));
 }

@@ -90,7 +90,7 @@ TEST_F(TimeTravelDisk, ThatFillsKeepsStatesWaitingAndAClockThatJumpsLosesNone) {
   Child sender = send(80.0);
   std::this_thread::sleep_for(seconds{30});
   const std::uint64_t before = samples_in(folder_ / "disk/spool");
-  EXPECT_GT(before, 10U * 300U);
+  EXPECT_GT(before, 2U * 300U);  // samples wait 24 s for the guards, a state 3 s
   disk.fill();
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
