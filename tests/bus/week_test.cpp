@@ -172,8 +172,7 @@ class TimeTravelWeek : public testing::Test {
 };
 
 TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
-  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.0) * 3600.0;
-  if (end_s == 0.0) GTEST_SKIP() << "tests/bus/week runs it";
+  const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.02) * 3600.0;  // tests/bus/week: more
   using Act = void (TimeTravelWeek::*)();
   struct Rule {
     const char* name;
@@ -199,7 +198,7 @@ TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
     }
     random_() % 4 == 0 ? kill_program() : end_life();
   }
-  EXPECT_LT(most_kib_, 64U * 1024U);
+  EXPECT_LT(most_kib_, 96U * 1024U);  // 20 MiB of it the surrogates of the live floor
   std::printf("week: %.2f h of driving, %d lives, %d of them killed\n", driven_s_ / 3600.0, lives_,
               kills_);
   for (const Rule& rule : rules) std::printf("week: %s %d times\n", rule.name, rule.times);
