@@ -125,9 +125,11 @@ class FleetTest(unittest.TestCase):
         for name, service in compose["services"].items():
             for volume in service.get("volumes", []):
                 source = volume.split(":")[0]
-                if source.startswith("./") and source != "./spool":
+                if source == "./spool" or source.startswith("./secrets"):
+                    continue  # whoever runs it makes these
+                if source.startswith("."):
                     self.assertTrue((folder / source).exists(), (name, source))
-                elif not source.startswith("."):
+                else:
                     self.assertIn(source, compose["volumes"])
             self.assertLessEqual(set(service.get("secrets", [])), set(compose["secrets"]))
             if service["image"] == "dampline":  # flags that the program has
