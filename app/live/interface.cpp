@@ -101,6 +101,19 @@ void end_mqtt(MqttPublisher& mqtt, RunResult& result) {
     result.warnings.push_back(fmt::format("MQTT: {} alarms have not reached the broker.", lost));
 }
 
+/// Every segment's state into the spool; what the spool has to say is among the run's warnings.
+void keep_segments(fleet::Spool& spool, const Config& config, const std::vector<InputFile>& inputs,
+                   LiveOutlets& outlets) {
+  const std::uint64_t boot = std::uint64_t{std::random_device{}()} << 32U;
+  outlets.segment = [&spool, &config, &inputs, boot](const SegmentState& state) {
+    SegmentFile file = describe_segment(state, config, inputs, boot);
+    spool.put(file.about.segment, std::move(file.bytes));
+  };
+  outlets.describe = [&spool](RunResult& result) {
+    for (std::string& text : spool.warnings()) result.warnings.push_back(std::move(text));
+  };
+}
+
 }  // namespace
 
 Identified identify_live(const Config& config, const std::string& interface,
@@ -121,7 +134,6 @@ Identified identify_live(const Config& config, const std::string& interface,
   const auto serving = open_serving(config);
   const auto mqtt = open_mqtt(config);
   const auto spool = open_spool(config);
-  const std::uint64_t boot = std::uint64_t{std::random_device{}()} << 32U;
   const std::vector<InputFile> inputs = inputs_of(config, interface);
   LiveOutlets outlets;
   outlets.begin = [&](Recorder& recorder) {
@@ -152,15 +164,7 @@ Identified identify_live(const Config& config, const std::string& interface,
     if (mqtt) mqtt->publish(text);
     publish_files(place, result, text);
   };
-  if (spool) {
-    outlets.segment = [&](const SegmentState& state) {
-      SegmentFile file = describe_segment(state, config, inputs, boot);
-      spool->put(file.about.segment, std::move(file.bytes));
-    };
-    outlets.describe = [&](RunResult& result) {
-      for (std::string& text : spool->warnings()) result.warnings.push_back(std::move(text));
-    };
-  }
+  if (spool) keep_segments(*spool, config, inputs, outlets);
   outlets.alarm = [&](const AlarmChange& change, double time_s) {
     if (mqtt) mqtt->tell(change, time_s);
   };

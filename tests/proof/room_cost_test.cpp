@@ -96,7 +96,7 @@ TEST(ChainCost, OfTheWorstCaseIsBounded) {
 
 TEST(ChainCost, OfTheWorstCaseWithEveryCandidateIsBounded) {
   if (!fs::exists("/proc/self/maps")) GTEST_SKIP() << "valgrind needs /proc";
-  EXPECT_LE(spread_of("explain").largest, 250'000U);
+  EXPECT_LE(spread_of("explain").largest, 280'000U);
 }
 
 TEST(CallgrindProfile, TellsAFunctionsOwnCostFromThatOfItsCalls) {

@@ -121,7 +121,9 @@ std::string norm_text(const Car& car, const Load& load, const std::string& quant
 
 std::string trend_table(const Car& car) {
   std::vector<std::vector<std::string>> rows;
-  for (const auto& [truck, t] : car.trends) {
+  for (const CarTrend& of : car.trends) {
+    const std::string& truck = of.truck;
+    const Trend& t = of.trend;
     const Load load{t.load, t.moving_mass_kg};
     const auto add = [&](const char* quantity, const std::optional<Estimate>& value,
                          const char* unit) {

@@ -142,7 +142,7 @@ std::string csv_cell(const Query& row, int column) {
     case Cell::kText:
       break;
   }
-  const std::string text = row.text(column);
+  std::string text = row.text(column);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string{"\"\""} : std::string{c};
@@ -233,6 +233,7 @@ bool is_view(std::string_view name) { return find_view(name) != nullptr; }
 
 std::string view_names() {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kViews));
   for (const View& view : kViews) names.push_back(view.name);
   return list_words(names);
 }

@@ -449,23 +449,22 @@ double Explainer::left_of_surrogate(const Diagnosis& surrogate, const Model& mod
 
 bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
                             Explanation& e) noexcept {
-  const double share = surrogates.share;
   const auto mean_of = [&](const ScaleWeights& weights, double target) {
-    const double first = left_of_surrogate(surrogates.base, e.base_model, weights, share * target);
+    const double first = left_of_surrogate(surrogates.base, e.base_model, weights, target);
     if (surrogates.other_noise == nullptr || first < 0.0) return first;
-    const double second =
-        left_of_surrogate(*surrogates.other_noise, e.base_model, weights, share * target);
+    const double second = left_of_surrogate(*surrogates.other_noise, e.base_model, weights, target);
     return second < 0.0 ? second : 0.5 * (first + second);
   };
-  const double base_floor = mean_of(e.base_weight, e.base_target);
+  const double base_floor = mean_of(e.base_weight, surrogates.share * e.base_target);
   if (base_floor < 0.0) return false;
   e.base_floor_nmse = base_floor;
   if (!beats_surrogate(surrogates.base, e)) drop_steps(e);
   const Model remembering = remembering_part(e);
   const bool remembers = surrogates.remembering != nullptr && remembering.count > e.base_count;
-  const double floor = remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight,
-                                                     share * e.target)
-                                 : mean_of(e.weight, e.target);
+  const double target = surrogates.share * e.target;
+  const double floor =
+      remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, target)
+                : mean_of(e.weight, target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
   conclude(impacts, e);
@@ -476,9 +475,8 @@ Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
                              const Candidate& skew) noexcept {
   if (diagnosis.store().count() < kFewestEntries || !evidence_.load(diagnosis.store())) return {};
   Model with;
-  for (std::size_t i = 0; i < model.count; ++i) {
+  for (std::size_t i = 0; i < model.count; ++i)
     if (model.effect[i].count > 0) with = with.with(model.effect[i]);
-  }
   const int term = first_term(with, with.count);
   with = with.with(skew);
   const ModelFit fit = settle(diagnosis.store(), with);
