@@ -141,9 +141,9 @@ TEST(SamplePlacer, MakesStampedJitterAsGoodAsNone) {
     for (const Sample& sample : ride(jitter_s, stamped, 100 * sim::kSampleRateHz))
       core->push(sample);
     core->finish();
-    for (const Fault& fault : core->faults().list()) {
+    const FaultView faults = core->faults();
+    for (const Fault& fault : faults.list())
       EXPECT_EQ(stamped, fault.kind != FaultKind::kJitter) << name_of(fault.kind);
-    }
     return core->snapshot().coulomb_n;
   };
   const Estimate even = level_of(0.0, true);
