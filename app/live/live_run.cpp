@@ -121,7 +121,7 @@ void LiveRun::publish_when_fresh() {
   result.origin = origin_of(config_, parts_.inputs, result.origin.recorded);
   result.origin.written_ns = parts_.clock->realtime_ns();
   raise_alarms(result);
-  if (outlets_.describe) outlets_.describe(result);
+  describe_segments(result);
   if (acquisition_->status().front().any_sample)
     recorder_.newest_events().describe(acquisition_->status().front().view.first_time_ns, result);
   publish(result);
@@ -139,6 +139,14 @@ void LiveRun::raise_alarms(RunResult& result) {
   if (alarm_program_.failures() > 0)
     result.warnings.push_back(fmt::format("[alarm] on_alarm could not be started {} times.",
                                           format_count(alarm_program_.failures())));
+}
+
+void LiveRun::describe_segments(RunResult& result) const {
+  if (segments_ && segments_->lost() > 0)
+    result.warnings.push_back(
+        fmt::format("[spool]: the last states of {} segments found no room on their way to it.",
+                    format_count(segments_->lost())));
+  if (outlets_.describe) outlets_.describe(result);
 }
 
 void LiveRun::pass_segments() {
@@ -175,7 +183,7 @@ Identified LiveRun::conclude() {
   if (segments_) segments_->finish();
   pass_segments();
   out.result = truck_.finish(status.rate, parts_.name);
-  if (outlets_.describe) outlets_.describe(out.result);
+  describe_segments(out.result);
   describe_frames(status.source, status.assembler, out.result);
   describe_live(status, surroundings("ended"), out.result);
   out.result.watched = alarms_.states();

@@ -88,6 +88,7 @@ class LiveRun {
   void publish(const RunResult& result);
   void raise_alarms(RunResult& result);
   void pass_segments();
+  void describe_segments(RunResult& result) const;
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();
   void note(hal::EventKind kind, std::int64_t value);
