@@ -19,8 +19,8 @@ constexpr int kNice = 10;  // the acquisition and the writer come first
 
 }  // namespace
 
-LiveExplainer::LiveExplainer(const Config& config, ExplainRun& run, Pace pace)
-    : config_{config},
+LiveExplainer::LiveExplainer(Config config, ExplainRun& run, Pace pace)
+    : config_{std::move(config)},
       run_{run},
       pace_{pace},
       every_ticks_{std::llround(kEveryS * rate_hz())},

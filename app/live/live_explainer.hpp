@@ -26,7 +26,7 @@ class LiveExplainer {
     kWaits,     ///< it waits, while the explainer's thread runs: of a replay
   };
   /// Watches `run` from now on, which outlives it. Nothing is allocated per sample.
-  LiveExplainer(const Config& config, ExplainRun& run, Pace pace = Pace::kOfTheBus);
+  LiveExplainer(Config config, ExplainRun& run, Pace pace = Pace::kOfTheBus);
   LiveExplainer(const LiveExplainer&) = delete;
   LiveExplainer& operator=(const LiveExplainer&) = delete;
   ~LiveExplainer();

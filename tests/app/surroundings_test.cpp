@@ -18,17 +18,17 @@ using testing::HasSubstr;
 
 TEST(Language, WithADecimalCommaChangesNoByte) {
   const Program program;
+  // The C library never frees the parts of LOCPATH: a sanitized program is not to look for leaks.
+  const std::string places = "LOCPATH=\"$PWD/locale\" ASAN_OPTIONS=detect_leaks=0 ";
   const auto shell = [&](const std::string& command) {
-    return program.run(
-        "--version",
-        "LOCPATH=\"$PWD/locale\" && export LOCPATH && mkdir -p locale && " + command + " &&");
+    return program.run("--version", "(mkdir -p locale && " + places + command + ") &&");
   };
   ASSERT_EQ(shell("localedef -f UTF-8 -i de_DE locale/de_DE.UTF-8").code, 0);
-  ASSERT_EQ(shell("test \"$(env LC_ALL=de_DE.UTF-8 printf %.1f 2,5)\" = 2,5").code, 0)
+  ASSERT_EQ(shell("env LC_ALL=de_DE.UTF-8 printf %.1f 2,5 | grep -qx 2,5").code, 0)
       << "the language is not there";
   std::map<std::string, std::string> seen;
   for (const std::string language : {"C", "de_DE.UTF-8"}) {
-    const std::string with = "LOCPATH=\"$PWD/locale\" LC_ALL=" + language;
+    const std::string with = places + "LC_ALL=" + language;
     ASSERT_EQ(program.run("simulate --duration 20 --quiet --force --out run.log", with).code, 0);
     ASSERT_EQ(program.run("simulate --duration 20 --quiet --force --out run.csv", with).code, 0);
     std::string all = program.read("run.log") + program.read("run.csv");

@@ -91,9 +91,12 @@ class Nats : public SegmentsTest {
     for (int i = 0; i < 200 && !answers(port); ++i) std::this_thread::sleep_for(Milliseconds{20});
     ASSERT_TRUE(answers(port)) << program_.read(server + ".log");
   }
+  /// Until its ports are free; one that was killed, and that nobody waited for, has no program.
   void stop(const std::string& server) const {
-    static_cast<void>(shell(
-        fmt::format("test ! -f {0}.pid || {{ kill -9 $(cat {0}.pid); rm {0}.pid; }}", server)));
+    static_cast<void>(
+        shell(fmt::format("test ! -f {0}.pid || {{ read -r pid <{0}.pid; kill -9 $pid; rm {0}.pid; "
+                          "while test -e /proc/$pid/exe; do sleep .01; done; }}",
+                          server)));
   }
   static bool answers(int port) {
     const int handle = ::socket(AF_INET, SOCK_STREAM, 0);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/error.hpp"
 #include "app/fleet/store/store.hpp"
@@ -80,7 +81,7 @@ class SqliteQuery final : public Query {
 
 class Sqlite final : public Connection {
  public:
-  Sqlite(const std::string& file, Access access) : name_{file} {
+  Sqlite(std::string file, Access access) : name_{std::move(file)} {
     const int flags =
         access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     const int code = sqlite3_open_v2(name_.c_str(), &handle_, flags, nullptr);
