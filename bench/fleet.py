@@ -6,7 +6,7 @@ Usage: fleet.py DAMPLINE [--cars 10000] [--days 365] [--bodies FILE]
 
 Rows as `dampline collect` writes them, one truck a car and one segment a day, laden or empty; most
 trucks wear slowly, some are planted: another level, a fast trend, a step ten days ago, a broken
-spring, silence, faults of the data. In SQLite, and in PostgreSQL where that is installed. States
+spring, silence, faults of the data, alarms. In SQLite, and in PostgreSQL where that is installed. States
 themselves are left out, unless --bodies names one, which all rows then hold.
 """
 import argparse
@@ -32,9 +32,9 @@ SERVER = pathlib.Path("/usr/lib/postgresql/15/bin/initdb")
 DAY_NS = 86_400_000_000_000
 FIRST_NS = 1_735_689_600_000_000_000  # 2025-01-01, 0 h UTC
 LOADS = {"laden": (37200.0, 8350.0, 5.26e6), "empty": (9300.0, 2940.0, 2.6e6)}
-PLANTED = ("level", "trend", "change", "stiffness", "silent", "faulty")
+PLANTED = ("level", "trend", "change", "stiffness", "silent", "faulty", "alarmed")
 COLUMNS = ("vehicle truck start_ns record seq end_ns load moving_mass_kg basis rate_hz coulomb_n coulomb_std_n "
-           "stiffness_npm stiffness_std_npm trust light checksum hours usable body").split()
+           "stiffness_npm stiffness_std_npm trust light checksum hours usable alarms body").split()
 
 
 class Fleet:
@@ -62,7 +62,7 @@ class Fleet:
         return f"31 80 {4000 + car // 1000:04d} {car % 1000:03d}-{car % 10}"
 
     def rows(self):
-        silent, faulty = set(self.planted["silent"]), set(self.planted["faulty"])
+        silent, faulty, alarmed = (set(self.planted[name]) for name in PLANTED[4:])
         for day in range(self.days):
             years = (day - self.days) / 365.25
             scatter = 1 + 0.01 * self.random.standard_normal((2, self.cars))
@@ -78,9 +78,10 @@ class Fleet:
                 coulomb = float(level * factor * scatter[0, car])
                 stiffness = float(spring * self.stiffness[car] * scatter[1, car])
                 bad = car in faulty and day > self.days - 4
+                alarms = "coulomb_below, drift" if car in alarmed and day > self.days - 4 else ""
                 yield (self.name(car), "A", start, 0, 1_080_000, start + 3_600_000_000_000, load, mass,
                        "00000000deadbeef", 300.0, coulomb, 0.004 * level, stiffness, 0.006 * spring,
-                       "data_faulty" if bad else "trusted", 1, 1, 1.0, 0 if bad else 1, self.body)
+                       "data_faulty" if bad else "trusted", 1, 1, 1.0, 0 if bad else 1, alarms, self.body)
 
 
 def fill_sqlite(dampline, fleet, file):
@@ -190,7 +191,8 @@ def report(kind, filled_s, fleet, rows, total, hits, false, size):
         print(f"| {name} | {seconds:.3f} | {characters / 1e3:.0f} |")
     text = ", ".join(f"{quantity} {found} of {planted}" for quantity, (found, planted) in hits.items())
     print(f"\nPlanted outliers found: {text}; other cars named: {false}; silent {total['trucks_silent']} of "
-          f"{len(fleet.planted['silent'])}, faulty {total['trucks_faulty']} of {len(fleet.planted['faulty'])}.")
+          f"{len(fleet.planted['silent'])}, faulty {total['trucks_faulty']} of {len(fleet.planted['faulty'])}, with "
+          f"alarms {total['trucks_with_alarms']} of {len(fleet.planted['alarmed'])}.")
 
 
 def folder_bytes(folder):

@@ -237,11 +237,11 @@ def read_state(path):
         raise ValueError(f"{path}: a payload of another length than its {entries} entries need")
     factors = [_factors(payload, _HEAD_BYTES + i * length, light) for i in range(entries + 1)]
     state.total, state.entries = factors[0], factors[1:]
-    state.about = _about(payload[sums:]) if version > 1 else {}
+    state.about = _about(payload[sums:], version) if version > 1 else {}
     return state
 
 
-def _about(data):
+def _about(data, version):
     at = 0
 
     def take(layout):
@@ -264,6 +264,7 @@ def _about(data):
     viscous, trust = take("2I")
     about["viscous"] = bool(viscous)
     about["trust"] = ("trusted", "model_incomplete", "data_faulty", "not_identified")[trust]
+    about["alarms"] = text() if version > 2 else ""
     return about
 
 
@@ -273,8 +274,8 @@ def _check_frame(data, path):
     if len(data) < 44:
         raise ValueError(f"{path}: is cut off after {len(data)} bytes")
     version, kind, *sizes, _, length = struct.unpack_from("<2H3IQQ", data, 8)
-    if version not in (1, 2) or kind > version - 1 or sizes != [_SCALES, _COLUMNS, _SEGMENTS]:
-        raise ValueError(f"{path}: is of version {version} with sizes {sizes}, expected 1 or 2 and "
+    if version not in (1, 2, 3) or kind > min(version - 1, 1) or sizes != [_SCALES, _COLUMNS, _SEGMENTS]:
+        raise ValueError(f"{path}: is of version {version} with sizes {sizes}, expected 1 to 3 and "
                          f"{[_SCALES, _COLUMNS, _SEGMENTS]}")
     if len(data) != 44 + length:
         raise ValueError(f"{path}: is cut off or has bytes too many: {len(data)}, expected {44 + length}")

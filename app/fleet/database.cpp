@@ -29,31 +29,34 @@ using store::Query;
 constexpr const char* kPut = R"sql(
 insert into state (vehicle, truck, start_ns, record, seq, end_ns, load, moving_mass_kg, basis,
   rate_hz, coulomb_n, coulomb_std_n, stiffness_npm, stiffness_std_npm, trust, light, checksum,
-  hours, usable, body)
-values ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20)
+  hours, usable, alarms, body)
+values ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20,
+  $21)
 on conflict (vehicle, truck, start_ns, record) do update set
   seq = excluded.seq, end_ns = excluded.end_ns, load = excluded.load,
   moving_mass_kg = excluded.moving_mass_kg, basis = excluded.basis, rate_hz = excluded.rate_hz,
   coulomb_n = excluded.coulomb_n, coulomb_std_n = excluded.coulomb_std_n,
   stiffness_npm = excluded.stiffness_npm, stiffness_std_npm = excluded.stiffness_std_npm,
   trust = excluded.trust, light = excluded.light, checksum = excluded.checksum,
-  hours = excluded.hours, usable = excluded.usable, body = excluded.body
+  hours = excluded.hours, usable = excluded.usable, alarms = excluded.alarms,
+  body = excluded.body
 where state.seq < excluded.seq or (state.seq = excluded.seq and
   (state.light > excluded.light or (state.light = excluded.light and state.checksum > excluded.checksum)))
 )sql";
 
 constexpr const char* kRowsOfTruck =
     "select load, moving_mass_kg, start_ns, end_ns, hours, coulomb_n, coulomb_std_n, "
-    "stiffness_npm, stiffness_std_npm, trust, usable from state where vehicle = $1 and truck = $2 "
+    "stiffness_npm, stiffness_std_npm, trust, usable, alarms from state where vehicle = $1 and "
+    "truck = $2 "
     "order by start_ns, record";
 
 constexpr const char* kPutTrend = R"sql(
 insert into trend (vehicle, truck, load, moving_mass_kg, segments, usable_segments, faulty_segments,
-  hours, first_ns, last_ns, last_contact_utc, newest_trust, mean_n, mean_std_n, level_n, level_std_n,
-  change_n, change_std_n, trend_n_per_year, trend_std_n_per_year, scatter, stiffness_npm,
-  stiffness_std_npm)
+  hours, first_ns, last_ns, last_contact_utc, newest_trust, newest_alarms, mean_n, mean_std_n, level_n,
+  level_std_n, change_n, change_std_n, trend_n_per_year, trend_std_n_per_year, scatter,
+  stiffness_npm, stiffness_std_npm)
 values ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, nullif($11, ''), $12, $13, $14, $15, $16, $17, $18,
-  $19, $20, $21, $22, $23)
+  $19, $20, $21, $22, $23, $24)
 )sql";
 
 /// Numbers whose squares and quotients a database can form.
@@ -95,7 +98,8 @@ double hours_of(const Leaf& leaf) {
 /// What came from outside as both databases can keep it.
 void check_texts(const Leaf& leaf) {
   const StateAbout& about = leaf.about;
-  for (const std::string* text : {&about.segment.vehicle, &about.segment.truck, &about.load})
+  for (const std::string* text :
+       {&about.segment.vehicle, &about.segment.truck, &about.load, &about.alarms})
     if (drivers::printable(*text) != *text)
       throw RunError{fmt::format("{}: names {}, expected text without control characters, in UTF-8",
                                  leaf.file.string(), drivers::quote(*text))};
@@ -181,7 +185,8 @@ Stored Database::put(const Leaf& leaf, const std::string& bytes) {
   put->set(17, std::int64_t{leaf.checksum});
   put->set(18, hours_of(leaf));
   put->set(19, std::int64_t{is_usable(about) ? 1 : 0});
-  put->set_bytes(20, bytes);
+  put->set(20, about.alarms);
+  put->set_bytes(21, bytes);
   put->step();
   const bool is_written = put->changed() > 0;
   if (is_written) changed_.emplace(about.segment.vehicle, about.segment.truck);
@@ -208,7 +213,7 @@ void Database::write_trends(const Truck& truck) {
   while (read->step())
     rows.push_back({read->text(0), read->number(1), read->integer(2), read->integer(3),
                     read->number(4), estimate_at(*read, 5).value_or(Estimate{}),
-                    estimate_at(*read, 7), read->text(9), read->integer(10) == 1});
+                    estimate_at(*read, 7), read->text(9), read->integer(10) == 1, read->text(11)});
   const auto remove = connection().query("delete from trend where vehicle = $1 and truck = $2");
   remove->set(1, truck.first);
   remove->set(2, truck.second);
@@ -230,12 +235,13 @@ void Database::write_trends(const Truck& truck) {
     if (const std::size_t t = contact.find('T'); t != std::string::npos) contact[t] = ' ';
     put->set(11, contact);
     put->set(12, trend.newest_trust);
-    set(*put, 13, trend.mean_n);
-    set(*put, 15, trend.level_n);
-    set(*put, 17, trend.change_n);
-    set(*put, 19, trend.trend_n_per_year);
-    put->set(21, trend.scatter.value_or(std::nan("")));
-    set(*put, 22, trend.stiffness_npm);
+    put->set(13, trend.newest_alarms);
+    set(*put, 14, trend.mean_n);
+    set(*put, 16, trend.level_n);
+    set(*put, 18, trend.change_n);
+    set(*put, 20, trend.trend_n_per_year);
+    put->set(22, trend.scatter.value_or(std::nan("")));
+    set(*put, 23, trend.stiffness_npm);
     put->step();
   }
 }

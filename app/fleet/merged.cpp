@@ -115,6 +115,7 @@ StateAbout about_of(std::span<const Leaf> leaves) {
       common(leaves, [](const StateAbout& a) -> const std::string& { return a.segment.truck; });
   out.load = common(leaves, [](const StateAbout& a) -> const std::string& { return a.load; });
   out.segment.record = 0;
+  out.alarms.clear();
   out.segments = static_cast<std::uint32_t>(leaves.size());
   out.sequence = 0;
   for (const Leaf& leaf : leaves) {

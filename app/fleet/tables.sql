@@ -24,6 +24,7 @@ create table state (
   checksum bigint not null,       -- CRC-32C of the body
   hours double precision not null,
   usable bigint not null,         -- 1: its level counts: it can be trusted, and is a number
+  alarms text not null,           -- raised in it: "coulomb_below, drift"
   body bytea not null,            -- state.dls
   primary key (vehicle, truck, start_ns, record)
 );
@@ -45,6 +46,7 @@ create table trend (
   last_ns bigint not null,
   last_contact_utc text,
   newest_trust text not null,
+  newest_alarms text not null,    -- of its newest segment
   mean_n double precision,        -- of all usable segments, weighted by their deviations
   mean_std_n double precision,
   level_n double precision,       -- the same of the newest week

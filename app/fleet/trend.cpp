@@ -128,6 +128,7 @@ Trend trend_of(std::span<const SegmentRow* const> rows) {
     if (row->end_ns >= out.last_ns) {
       out.last_ns = row->end_ns;
       out.newest_trust = row->trust;
+      out.newest_alarms = row->alarms;
     }
     if (row->usable) usable.push_back(row);
   }

@@ -22,6 +22,7 @@ struct SegmentRow {
   std::optional<Estimate> stiffness_npm;
   std::string trust;
   bool usable{false};
+  std::string alarms;  ///< raised in it
 };
 
 /// A row of table `trend`: of one truck with one load.
@@ -31,7 +32,7 @@ struct Trend {
   std::int64_t segments{0}, usable_segments{0}, faulty_segments{0};
   double hours{0.0};
   std::int64_t first_ns{0}, last_ns{0};
-  std::string newest_trust;
+  std::string newest_trust, newest_alarms;
   std::optional<Estimate> mean_n;            ///< of all usable segments
   std::optional<Estimate> level_n;           ///< of the newest kNewest
   std::optional<Estimate> change_n;          ///< from the mean of those before

@@ -17,6 +17,7 @@ select vehicle, truck, cast(sum(segments) as bigint) as segments, sum(hours) as 
   sqrt(1 / sum(1 / (mean_std_n * mean_std_n))) as coulomb_std_n,
   cast(sum(faulty_segments) as bigint) as faulty_segments,
   max(case when newest = 1 then newest_trust end) as newest_trust,
+  max(case when newest = 1 then newest_alarms end) as newest_alarms,
   max(last_ns) as last_ns
 from (
   select trend.*, row_number() over (

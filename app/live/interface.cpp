@@ -105,8 +105,9 @@ void end_mqtt(MqttPublisher& mqtt, RunResult& result) {
 void keep_segments(fleet::Spool& spool, const Config& config, const std::vector<InputFile>& inputs,
                    LiveOutlets& outlets) {
   const std::uint64_t boot = std::uint64_t{std::random_device{}()} << 32U;
-  outlets.segment = [&spool, &config, &inputs, boot](const SegmentState& state) {
-    SegmentFile file = describe_segment(state, config, inputs, boot);
+  outlets.segment = [&spool, &config, &inputs, boot](const SegmentState& state,
+                                                     const std::string& alarms) {
+    SegmentFile file = describe_segment(state, config, inputs, boot, alarms);
     spool.put(file.about.segment, std::move(file.bytes));
   };
   outlets.describe = [&spool](RunResult& result) {

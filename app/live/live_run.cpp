@@ -2,6 +2,7 @@
 #include "app/live/live_run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <cmath>
@@ -132,6 +133,7 @@ void LiveRun::raise_alarms(RunResult& result) {
     const std::int64_t now_ns = parts_.run_time.from_monotonic(parts_.clock->monotonic_ns());
     recorder_.add(
         {now_ns, change.kind(), change.number, std::llround(change.watch.value.value_or(0.0))});
+    if (change.watch.active) raised_.insert(change.watch.name);
     static_cast<void>(alarm_program_.start(change, result.duration_s));
     if (outlets_.alarm) outlets_.alarm(change, result.duration_s);
   }
@@ -150,7 +152,17 @@ void LiveRun::describe_segments(RunResult& result) const {
 }
 
 void LiveRun::pass_segments() {
-  while (segments_ && segments_->next()) outlets_.segment(segments_->front());
+  while (segments_ && segments_->next()) {
+    outlets_.segment(segments_->front(), fmt::format("{}", fmt::join(raised_, ", ")));
+    if (segments_->front().is_last) forget_alarms();
+  }
+}
+
+/// Those that are still raised belong to the next segment, too.
+void LiveRun::forget_alarms() {
+  raised_.clear();
+  for (const WatchState& watch : alarms_.states())
+    if (watch.active) raised_.insert(watch.name);
 }
 
 /// A disk that is full or a directory that is gone ends no run: the next version is tried again.

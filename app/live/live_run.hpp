@@ -4,6 +4,7 @@
 #include <functional>
 #include <latch>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,8 @@ struct LiveOutlets {
   std::function<void(const RunResult&)> publish{};
   /// What they have to tell of themselves goes into a result before it is published.
   std::function<void(RunResult&)> describe{};
-  /// A later state of a segment; absent: there are no segments.
-  std::function<void(const SegmentState&)> segment{};
+  /// A later state of a segment, and the alarms raised in it; absent: there are no segments.
+  std::function<void(const SegmentState&, const std::string&)> segment{};
   /// An alarm was raised or went, at that time of the record.
   std::function<void(const AlarmChange&, double)> alarm{};
   /// Some times a second.
@@ -88,6 +89,7 @@ class LiveRun {
   void publish(const RunResult& result);
   void raise_alarms(RunResult& result);
   void pass_segments();
+  void forget_alarms();
   void describe_segments(RunResult& result) const;
   [[nodiscard]] LiveSurroundings surroundings(const std::string& state) const;
   [[nodiscard]] Identified conclude();
@@ -105,6 +107,7 @@ class LiveRun {
   Recorder recorder_;
   Monitor monitor_;
   Alarms alarms_;
+  std::set<std::string> raised_;  // in the segment that goes on
   AlarmProgram alarm_program_;
   Realtime realtime_;  // written before the threads are told apart, and by acquire()
   std::latch ready_{1};

@@ -88,6 +88,7 @@ void SegmentRun::take(const Sample& sample) noexcept {
   if (newest_ns_ < due_ns_) return;
   due_ns_ = newest_ns_ + every_ns_;
   export_to(newest_->back());
+  newest_->back().is_last = false;
   newest_->publish();
 }
 
@@ -102,6 +103,7 @@ void SegmentRun::begin(const Sample& sample) noexcept {
 void SegmentRun::end() noexcept {
   any_ = false;
   export_to(*ending_);
+  ending_->is_last = true;
   if (!ended_.push(*ending_)) lost_.fetch_add(1, std::memory_order_release);
   estimator_->clear_statistics();
 }
@@ -139,13 +141,15 @@ bool SegmentRun::next() {
 }
 
 SegmentFile describe_segment(const SegmentState& segment, const Config& config,
-                             const std::vector<InputFile>& inputs, std::uint64_t boot) {
+                             const std::vector<InputFile>& inputs, std::uint64_t boot,
+                             const std::string& alarms) {
   RunResult result = result_of(segment, config);
   result.origin = origin_of(config, inputs,
                             recorded_span(segment.view.first_time_ns, segment.view.newest_time_ns));
   SegmentFile out;
   out.about = state_about(config, result, segment.sums);
   if (out.about.segment.start_ns == 0) out.about.segment.record = boot + segment.number;
+  out.about.alarms = alarms;
   const StateKind kind = config.spool.kind == "light" ? StateKind::kLight : StateKind::kFull;
   out.bytes = encode_state(segment.sums, out.about, kind);
   return out;

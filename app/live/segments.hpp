@@ -20,6 +20,7 @@ struct SegmentState {
   TruckView view;  ///< the segment's ticks and times, the run's faults; no snapshot
   MeasuredRate rate;
   std::uint64_t number{0};         ///< of the segment in its run
+  bool is_last{false};             ///< of its segment
   std::int64_t run_first_tick{0};  ///< from which the times of faults count
 };
 
@@ -85,9 +86,9 @@ struct SegmentFile {
 
 /// As an identification of that stretch alone would say it. `inputs`: the source first. `boot`: a
 /// number of the run, by which its segments are told from another run's where the clock has no
-/// date.
+/// date. `alarms`: raised in it.
 [[nodiscard]] SegmentFile describe_segment(const SegmentState& segment, const Config& config,
-                                           const std::vector<InputFile>& inputs,
-                                           std::uint64_t boot);
+                                           const std::vector<InputFile>& inputs, std::uint64_t boot,
+                                           const std::string& alarms);
 
 }  // namespace dampline::app

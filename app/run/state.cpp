@@ -20,8 +20,9 @@ namespace dampline::app {
 namespace {
 
 constexpr std::string_view kMagic = "DAMPLINE";
-constexpr std::uint16_t kVersion = 2;
-constexpr std::uint16_t kBareVersion = 1;  // sums alone
+constexpr std::uint16_t kVersion = 3;
+constexpr std::uint16_t kBareVersion = 1;    // sums alone
+constexpr std::uint16_t kAlarmsVersion = 3;  // the first that knows alarms
 constexpr std::size_t kHeaderBytes =
     kMagic.size() + 4 * sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t);
 
@@ -223,19 +224,21 @@ void walk_about(Archive& archive, About& a) {
   walk_estimate(archive, a.stiffness_npm);
 }
 
-/// The two that are no plain numbers.
+/// With what is no plain number, and what came later.
 void write_about(Writer& out, const StateAbout& about) {
   walk_about(out, about);
   out(static_cast<std::uint32_t>(about.viscous ? 1 : 0));
   out(static_cast<std::uint32_t>(about.trust));
+  out(about.alarms);
 }
-StateAbout read_about(Reader& in, const std::string& origin) {
+StateAbout read_about(Reader& in, std::uint16_t version, const std::string& origin) {
   StateAbout about;
   std::uint32_t viscous = 0;
   std::uint32_t trust = 0;
   walk_about(in, about);
   in(viscous);
   in(trust);
+  if (version >= kAlarmsVersion) in(about.alarms);
   if (!in.read_all() || viscous > 1 || trust > static_cast<std::uint32_t>(Trust::kNotIdentified) ||
       about.segments == 0)
     fail(origin, "does not say what it is of as states of this version do");
@@ -359,7 +362,7 @@ StateAbout decode_state(std::string_view bytes, const std::string& origin, Stati
   StateAbout about;
   if (frame.version != kBareVersion) {
     Reader tail{frame.payload.substr(sums)};
-    about = read_about(tail, origin);
+    about = read_about(tail, frame.version, origin);
   }
   Reader reader{frame.payload};
   read_sums(reader, frame.kind, out);

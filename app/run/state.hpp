@@ -37,6 +37,8 @@ struct StateAbout {
   bool viscous{false};         ///< whether the law asked for has a viscous part
   Trust trust{Trust::kNotIdentified};
   Estimate coulomb_n, stiffness_npm;  ///< of this state alone, as its parameters.json has them
+  /// Of a segment of a live run: those of [alarm] that were raised in it, "coulomb_below, drift".
+  std::string alarms;
 };
 
 /// How the factors are kept: all of them, or in single precision those of the whole alone.

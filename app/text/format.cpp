@@ -176,4 +176,16 @@ std::string list_words(std::span<const std::string_view> words) {
   return text;
 }
 
+std::vector<std::string> parts_of_list(std::string_view text) {
+  constexpr std::string_view kBetween = ", ";
+  std::vector<std::string> out;
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBetween), text.size()));
+    if (text.empty()) return out;
+    const std::string_view part = text.substr(0, text.find(','));
+    out.emplace_back(part.substr(0, part.find_last_not_of(' ') + 1));
+    text.remove_prefix(part.size());
+  }
+}
+
 }  // namespace dampline::app

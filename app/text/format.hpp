@@ -61,4 +61,7 @@ void warn(std::string_view text);
 /// "a", "b" or "c", for messages that say what would have been accepted.
 [[nodiscard]] std::string list_words(std::span<const std::string_view> words);
 
+/// The parts of "a, b,c" without the spaces about them; empty ones are none.
+[[nodiscard]] std::vector<std::string> parts_of_list(std::string_view text);
+
 }  // namespace dampline::app

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "app/run/state.hpp"
 #include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
+#include "drivers/checksum/crc32c.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline::app {
@@ -66,10 +68,40 @@ TEST(StateFile, ReadsBackEveryField) {
   EXPECT_EQ(encode_state(*read), encode_state(*written));
 }
 
+/// As version 2 wrote it: without alarms.
+std::string of_version_2(std::string bytes) {
+  constexpr std::size_t kLengthAt = 32;
+  constexpr std::size_t kEmptyText = 4;
+  constexpr std::size_t kChecksum = 4;
+  const auto put = [&](std::size_t at, auto value) {
+    std::memcpy(bytes.data() + at, &value, sizeof(value));
+  };
+  bytes.erase(bytes.size() - kChecksum - kEmptyText, kEmptyText);
+  bytes[8] = 2;
+  put(kLengthAt, std::uint64_t{bytes.size() - kLengthAt - 8 - kChecksum});
+  const std::size_t covered = bytes.size() - kChecksum;
+  put(covered, drivers::crc32c({reinterpret_cast<const std::uint8_t*>(bytes.data()), covered}));
+  return bytes;
+}
+
+TEST(StateFile, KnowsTheAlarmsOfItsSegment) {
+  const auto sums = some_statistics();
+  StateAbout about;
+  about.segment.vehicle = "4711";
+  about.trust = Trust::kModelIncomplete;
+  const std::string old = of_version_2(encode_state(*sums, about));
+  EXPECT_EQ(decode_state(old, "old.dls", *sums).alarms, "");
+  EXPECT_EQ(decode_state(old, "old.dls", *sums).trust, Trust::kModelIncomplete);
+  about.alarms = "coulomb_below, drift";
+  for (const StateKind kind : {StateKind::kFull, StateKind::kLight})
+    EXPECT_EQ(decode_state(encode_state(*sums, about, kind), "new.dls", *sums).alarms,
+              about.alarms);
+}
+
 TEST(StateFile, IsLittleEndian) {
   const std::string bytes = encode_state(*some_statistics());
   EXPECT_EQ(bytes.substr(0, 8), "DAMPLINE");
-  EXPECT_EQ(bytes.substr(8, 4), std::string("\x02\x00\x00\x00", 4));
+  EXPECT_EQ(bytes.substr(8, 4), std::string("\x03\x00\x00\x00", 4));
   EXPECT_EQ(bytes.substr(24, 8), "\xef\xcd\xab\x89\x67\x45\x23\x01");
 }
 

@@ -122,6 +122,7 @@ class CollectFleet : public Collect {
       about.load = i % 2 == 0 ? "laden" : "empty";
       about.coulomb_n.value += 10.0 * (i / 6) + 7.0 * (i % 5);
       if (i == 17) about.trust = Trust::kDataFaulty;
+      if (i % 6 == 1) about.alarms = "coulomb_below";
       write_state(i, "", about, *sums);
       about.sequence /= 2;
       about.coulomb_n.value = -1.0;

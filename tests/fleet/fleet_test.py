@@ -84,6 +84,7 @@ class FleetTest(unittest.TestCase):
                     if number in one:
                         self.assertAlmostEqual(one[number] / float(view[number]), 1.0, delta=1e-12)
         self.assertEqual((told["cars"], told["trucks_silent"], told["trucks_faulty"]), (CARS, 1, 1))
+        self.assertEqual((told["trucks_with_alarms"], told["alarms"]), (1, {"coulomb_below": 1, "drift": 1}))
 
     def test_the_thresholds_stand_in_the_views(self):
         views = (TOP / "app/fleet/views.sql").read_text()
@@ -99,6 +100,9 @@ class FleetTest(unittest.TestCase):
             self.assertIn(self.planted("trend"), page)
             car = server.get("car?vehicle=" + urllib.parse.quote(self.planted("stiffness")))
             self.assertIn("Outside of its fleet", car)
+            self.assertIn(self.planted("alarmed"), page)
+            alarmed = server.get("car?vehicle=" + urllib.parse.quote(self.planted("alarmed")))
+            self.assertIn("coulomb below, drift", alarmed)
             self.assertEqual(server.get("trend.csv"), table(self.file, "trend"))
             history = rows(server.get("segment.csv?vehicle=" + urllib.parse.quote(self.planted("silent"))))
             self.assertEqual(len(history), DAYS - 19)
@@ -110,6 +114,7 @@ class FleetTest(unittest.TestCase):
             metrics = server.get("metrics")
         self.assertEqual(server.code, 0)
         self.assertIn("dampline_fleet_cars 80\n", metrics)
+        self.assertIn('dampline_fleet_alarms{alarm="drift"} 1\n', metrics)
         self.assertIn(f'dampline_fleet_outlier_deviations{{vehicle="{self.planted("change")}"', metrics)
         if shutil.which("promtool"):
             done = subprocess.run(["promtool", "check", "metrics"], input=metrics.encode(), capture_output=True)

@@ -61,7 +61,8 @@ class Logger {
 
  private:
   void collect(std::vector<SegmentFile>& out) {
-    while (segments_->next()) out.push_back(describe_segment(segments_->front(), config_, {}, 77));
+    while (segments_->next())
+      out.push_back(describe_segment(segments_->front(), config_, {}, 77, ""));
   }
   Config config_;
   sim::SimulationConfig simulation_;

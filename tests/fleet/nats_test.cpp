@@ -33,10 +33,25 @@ const std::vector<SegmentFile>& states() {
   static const std::vector<SegmentFile> kStates = Logger{Logger::config(20.0, 6.0)}.drive(50.0);
   return kStates;
 }
+constexpr int kStepsAnHour = 6;
+constexpr int kHours = 3;
+/// States of an hour each, one every ten minutes, of a car that moves for 20 s in each of these.
+/// `jumps`: of its clock, beside.
+std::vector<SegmentFile> hours_of_driving(std::uint64_t seed, std::vector<Logger::Jump> jumps) {
+  constexpr double kMovingS = 20.0;
+  constexpr int kSteps = kHours * kStepsAnHour;
+  for (int i = 1; i < kSteps; ++i)
+    jumps.push_back({kMovingS * i, 3600.0 / kStepsAnHour - kMovingS});
+  return Logger{Logger::config(3600.0, 600.0), seed}.drive(kMovingS * kSteps, jumps);
+}
+const std::vector<SegmentFile>& driven_states() {
+  static const std::vector<SegmentFile> kStates = hours_of_driving(5, {});
+  return kStates;
+}
 /// The same of one whose clock jumped.
 const std::vector<SegmentFile>& jumped_states() {
   static const std::vector<SegmentFile> kStates =
-      Logger{Logger::config(3600.0, 6.0), 6}.drive(45.0, {{15.0, -500.0}, {30.0, 40'000.0}});
+      hours_of_driving(6, {{70.0, -5000.0}, {190.0, 40'000.0}});
   return kStates;
 }
 
@@ -64,6 +79,7 @@ class Nats : public SegmentsTest {
             .code,
         0);
     configure("hub.conf", "");
+    configure("store.conf", "");
     configure("cars.conf", "");
     configure("leaf.conf", "");
     start("hub", port_);
@@ -85,9 +101,9 @@ class Nats : public SegmentsTest {
   }
   /// Until it answers.
   void start(const std::string& server, int port) {
-    ASSERT_EQ(
-        shell(fmt::format("nats-server -c {0}.conf >{0}.log 2>&1 & echo $! >{0}.pid", server)).code,
-        0);
+    const std::string command = server == "hub" ? "'" DAMPLINE_SOURCE_DIR "/app/service/nats/hub' ."
+                                                : fmt::format("nats-server -c {}.conf", server);
+    ASSERT_EQ(shell(fmt::format("{0} >{1}.log 2>&1 & echo $! >{1}.pid", command, server)).code, 0);
     for (int i = 0; i < 200 && !answers(port); ++i) std::this_thread::sleep_for(Milliseconds{20});
     ASSERT_TRUE(answers(port)) << program_.read(server + ".log");
   }
@@ -205,8 +221,34 @@ TEST_F(Nats, AKilledCollectorGoesOn) {
   EXPECT_TRUE(merged_bytes("spool") == merged_bytes("fleet.sqlite"));
 }
 
+/// Without `hub`, a nats-server that was killed drops a third of what it confirms afterwards.
+TEST_F(Nats, AKilledHubKeepsWhatItConfirms) {
+  constexpr int kSegments = 100;
+  fleet::NatsSender car{address_as("car-4711"), "4711"};
+  std::mt19937 random{7};
+  const auto send = [&](std::size_t state, double share) {
+    for (int i = 0; i < kSegments; ++i) {
+      if (std::uniform_real_distribution<>{0.0, 1.0}(random) > share) continue;
+      const SegmentFile file = of(states()[state], "4711", i);
+      EXPECT_TRUE(
+          comes([&] { return car.send(file.about.segment, file.bytes, kPatience).empty(); }));
+    }
+  };
+  ASSERT_EQ(states()[2].about.segment, states()[0].about.segment);
+  send(0, 0.7);
+  send(1, 0.7);
+  stop("hub");
+  start("hub", port_);
+  send(2, 1.0);
+  static_cast<void>(collect());
+  EXPECT_EQ(shell(fmt::format("sqlite3 fleet.sqlite 'select count(*) from state where seq = {}'",
+                              states()[2].about.sequence))
+                .output,
+            fmt::format("{}\n", kSegments));
+}
+
 TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
-  constexpr int kHours = 40;
+  constexpr int kSegments = 40;
   SpoolSettings settings;
   settings.folder = program_.path("spool").string();
   settings.keep_mib = 1;
@@ -214,7 +256,7 @@ TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
   fleet::Spool spool{settings, {"4711", "front", "", ""}};
   stop("hub");
   fleet::Forwarder forwarder{{settings.folder}, address_as("car-4711"), false};
-  for (int i = 0; i < kHours; ++i) {
+  for (int i = 0; i < kSegments; ++i) {
     const SegmentFile state = of(states().back(), "4711", i);
     spool.put(state.about.segment, state.bytes);
     if (i % 7 == 0) {
@@ -224,11 +266,11 @@ TEST_F(Nats, AFullSpoolSendsWhatItCouldKeep) {
   EXPECT_GT(spool.health().dropped, 0U);
   start("hub", port_);
   EXPECT_TRUE(comes([&] { return forwarder.round(kPatience).error.empty(); }));
-  EXPECT_EQ(collect().at("segments"), kHours - spool.health().dropped);
+  EXPECT_EQ(collect().at("segments"), kSegments - spool.health().dropped);
   EXPECT_TRUE(merged_bytes("spool") == merged_bytes("fleet.sqlite"));
 }
 
-/// 200 loggers behind two leaf servers, in virtual time: each step is some minutes of all.
+/// 200 loggers behind two leaf servers, in virtual time: each step is ten minutes of all.
 class Fleet : public Nats {
  protected:
   static constexpr int kLoggers = 200;
@@ -246,7 +288,7 @@ class Fleet : public Nats {
       Car car;
       car.spool = std::make_unique<fleet::Spool>(settings, RecordLabels{vehicle, "front", "", ""});
       car.forwarder = forwarder(i, false);
-      for (const SegmentFile& state : i % 10 == 7 ? jumped_states() : states())
+      for (const SegmentFile& state : i % 10 == 7 ? jumped_states() : driven_states())
         car.states.push_back(of(state, vehicle));
       cars_.push_back(std::move(car));
     }
@@ -292,8 +334,8 @@ TEST_F(Fleet, MergesToTheBytesOfItsFilesWhateverFails) {
   int now = 0;
   for (; now < 3; ++now) step(now, 0.7);
   static_cast<void>(collect());
-  stop("hub");  // for an hour: what is new replaces what was not sent
-  for (; now < 6; ++now) step(now, 0.1);
+  stop("hub");  // what is new replaces what was not sent
+  for (int i = 0; i < kStepsAnHour; ++i) step(now++, 0.05);
   stop("leaf2");
   step(now++, 0.05);
   start("hub", port_);
@@ -307,7 +349,7 @@ TEST_F(Fleet, MergesToTheBytesOfItsFilesWhateverFails) {
     EXPECT_EQ(late.send(old.about.segment, old.bytes, kPatience), "");
   }
   for (int i = 0; i < kLoggers; i += 10) static_cast<void>(forwarder(i, true)->round(kPatience));
-  for (; now < 16; ++now) step(now, 0.3);
+  for (; now < kHours * kStepsAnHour + 4; ++now) step(now, 0.3);
   stop("leaf");
   start_leaf("leaf", port_ + 2);
   for (Car& car : cars_)

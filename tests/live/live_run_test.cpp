@@ -96,9 +96,9 @@ std::unique_ptr<hal::FrameSource> simulated() {
 class LiveRunTest : public ::testing::Test {
  protected:
   Identified run(hal::FrameSource& source, const LiveOptions& options = {.realtime_priority = 0},
-                 LiveOutlets outlets = {}) {
+                 LiveOutlets outlets = {}, const Config& config = {}) {
     const LiveParts parts{"fake0", &source, &sink_, &clock_, hal::RunTime::start(clock_)};
-    return LiveRun{{}, can_channels({}), parts, options, std::move(outlets)}.run();
+    return LiveRun{config, can_channels({}), parts, options, std::move(outlets)}.run();
   }
   drivers::SystemClock clock_;
   MemorySink sink_;
@@ -189,6 +189,28 @@ TEST_F(LiveRunTest, PublishesOnTheWayAndTellsWhenTheSignalIsLost) {
   std::vector<std::string> names;
   for (const RunEvent& event : found.result.events) names.push_back(event.name);
   EXPECT_THAT(names, ::testing::Contains("signal_lost"));
+}
+
+TEST_F(LiveRunTest, ASegmentSaysWhichAlarmsWereRaisedInIt) {
+  Config config;
+  config.record = {"4711", "front", "", ""};
+  config.spool.segment_s = 10.0;
+  config.alarm.coulomb_below_n = 20'000.0;
+  config.alarm.coulomb_above_n = 20'000.0;
+  config.alarm.hold_s = 0.0;
+  Paced source{simulated()};
+  std::vector<std::string> alarms;  // of the last state of each segment
+  std::uint64_t newest = 0;
+  const auto take = [&](const SegmentState& state, const std::string& names) {
+    if (state.number == newest) alarms.pop_back();
+    newest = state.number;
+    alarms.push_back(describe_segment(state, config, {}, 1, names).about.alarms);
+  };
+  static_cast<void>(run(source, {.publish_every_s = 0.1, .realtime_priority = 0},
+                        {.publish = [](const RunResult&) {}, .segment = take}, config));
+  ASSERT_GE(alarms.size(), 8U);
+  EXPECT_EQ(alarms.front(), "");  // no estimate yet
+  EXPECT_EQ(alarms.back(), "coulomb_below");
 }
 
 TEST_F(LiveRunTest, EndsAfterItsDuration) {

@@ -149,24 +149,33 @@ std::string contact_table(const Car& car) {
     rows.push_back({t.truck.empty() ? "(no name)" : t.truck, t.last_contact_utc,
                     format_count(static_cast<std::uint64_t>(t.segments)),
                     format_count(static_cast<std::uint64_t>(t.faulty_segments)),
-                    fmt::format("{:.1f}", t.hours), plot_label(t.newest_trust)});
-  return html_table(
-      {"truck", "last contact (UTC)", "segments", "faulty", "hours", "newest segment"}, rows, 0);
+                    fmt::format("{:.1f}", t.hours), plot_label(t.newest_trust),
+                    plot_label(t.newest_alarms)});
+  return html_table({"truck", "last contact (UTC)", "segments", "faulty", "hours", "newest segment",
+                     "its alarms"},
+                    rows, 0);
 }
 
-std::string faulty_table(const Car& car) {
+/// What somebody should know of a segment; empty: nothing.
+std::string remark_on(const SegmentRow& row) {
+  std::string out = plot_label(row.alarms);
+  if (row.trust != "data_faulty") return out.empty() ? "" : "alarms: " + out;
+  return "faults of the data spoil it" + (out.empty() ? "" : "; alarms: " + out);
+}
+
+std::string remark_table(const Car& car) {
   constexpr std::size_t kMost = 20;
   std::vector<std::vector<std::string>> rows;
   for (auto s = car.segments.rbegin(); s != car.segments.rend() && rows.size() < kMost; ++s)
-    if (s->row.trust == "data_faulty")
+    if (const std::string remark = remark_on(s->row); !remark.empty())
       rows.push_back({s->truck.empty() ? "(no name)" : s->truck, s->start_utc,
                       load_text({s->row.load, s->row.moving_mass_kg}),
-                      fmt::format("{:.2f}", s->row.hours)});
+                      fmt::format("{:.2f}", s->row.hours), remark});
   if (rows.empty()) return "";
   return fmt::format(
-      "<section><h2>Segments that faults of the data spoil</h2>\n{}"
+      "<section><h2>Segments with alarms or faults of the data</h2>\n{}"
       "<p class=\"note\">The newest {} of them at most.</p></section>\n",
-      html_table({"truck", "start (UTC)", "load", "hours"}, rows, 0), kMost);
+      html_table({"truck", "start (UTC)", "load", "hours", "what"}, rows, 0), kMost);
 }
 
 }  // namespace
@@ -183,7 +192,7 @@ std::string car_page(const Car& car, const std::string& where, Kind kind) {
       loads.push_back(load);
   for (std::size_t i = 0; i < loads.size(); ++i) body += load_section(car, loads[i], i + 1);
   body += trend_table(car);
-  body += faulty_table(car);
+  body += remark_table(car);
   if (kind == Kind::kServed) {
     const std::string query = car_link(car.vehicle, kind).substr(std::string{"/car"}.size());
     body += fmt::format(

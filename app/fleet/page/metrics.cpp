@@ -22,6 +22,9 @@ std::string fleet_metrics(const Fleet& fleet) {
   text.single("fleet_newest_contact_timestamp_seconds", "gauge",
               "End of the newest segment, since 1970.",
               static_cast<double>(fleet.last_ns) / kNsPerS);
+  text.begin("fleet_alarms", "gauge", "Trucks in whose newest segment that alarm was raised.");
+  for (const auto& [alarm, trucks] : fleet.alarms)
+    text.value(static_cast<double>(trucks), {{"alarm", alarm}});
   text.single("fleet_trucks_silent", "gauge",
               "Trucks without contact in the week before the newest one.", fleet.silent.all);
   text.single("fleet_trucks_faulty", "gauge",

@@ -147,6 +147,8 @@ std::string answers(const Fleet& fleet) {
                             counted(fleet.segments), counted(std::llround(fleet.hours))));
   out += answer("Outliers", counted(std::int64_t(cars_outside.size())),
                 fmt::format("cars, by {} of their figures", counted(std::ssize(fleet.outliers))));
+  out +=
+      answer("Alarms", counted(fleet.alarmed.all), "trucks in whose newest segment one was raised");
   out += answer("Silent", counted(fleet.silent.all),
                 "trucks without contact in the week before the newest one");
   out += answer("Faulty", counted(fleet.faulty.all),
@@ -174,13 +176,13 @@ std::string contact_section(const std::string& title, const First<TruckContact>&
   for (const TruckContact& t : list.rows) {
     rows.push_back({vehicle_text(t.vehicle), t.truck, t.last_contact_utc, counted(t.segments),
                     counted(t.faulty_segments), fmt::format("{:.1f}", t.hours),
-                    plot_label(t.newest_trust)});
+                    plot_label(t.newest_trust), plot_label(t.newest_alarms)});
     links.push_back(car_link(t.vehicle, kind));
   }
   std::string out = fmt::format("<section><h2>{}: {}</h2>\n", title, counted(list.all));
-  out += html_table(
-      {"car", "truck", "last contact (UTC)", "segments", "faulty", "hours", "newest segment"}, rows,
-      0, {}, links);
+  out += html_table({"car", "truck", "last contact (UTC)", "segments", "faulty", "hours",
+                     "newest segment", "its alarms"},
+                    rows, 0, {}, links);
   if (list.all > std::int64_t(list.rows.size()))
     out += fmt::format("<p class=\"note\">The first {}; truck.csv has all.</p>\n", rows.size());
   return out + "</section>\n";
@@ -226,6 +228,7 @@ std::string fleet_page(const Fleet& fleet, const std::string& where, Kind kind) 
   body += outlier_section(fleet, kind);
   body += load_plots(fleet);
   body += norm_table(fleet);
+  body += contact_section("Trucks with alarms", fleet.alarmed, kind);
   body += contact_section("Silent trucks", fleet.silent, kind);
   body += contact_section("Trucks with faults of the data", fleet.faulty, kind);
   body += fmt::format("<p class=\"note\">From {}.</p>\n", escape_html(where));
@@ -261,11 +264,12 @@ std::string cars_page(const First<CarRow>& cars, std::int64_t first) {
 
 std::string fleet_text(const Fleet& fleet) {
   std::string out = fmt::format(
-      "{} cars, {} trucks, {} segments, {:.0f} h; newest contact {} UTC\n{} trucks silent for a "
-      "week, {} with faults of the data, {} files refused\n",
+      "{} cars, {} trucks, {} segments, {:.0f} h; newest contact {} UTC\n{} trucks with "
+      "alarms, {} silent for a week, {} with faults of the data, {} files refused\n",
       counted(fleet.cars), counted(fleet.trucks), counted(fleet.segments), fleet.hours,
       fleet.last_contact_utc.empty() ? "unknown" : fleet.last_contact_utc,
-      counted(fleet.silent.all), counted(fleet.faulty.all), counted(fleet.refused));
+      counted(fleet.alarmed.all), counted(fleet.silent.all), counted(fleet.faulty.all),
+      counted(fleet.refused));
   std::vector<std::vector<std::string>> norms{{"load", "what", "trucks", "median and scatter"}};
   for (const Norm& n : fleet.norms)
     norms.push_back({load_text(n.load), n.quantity, counted(n.trucks),
@@ -313,6 +317,8 @@ std::string fleet_json(const Fleet& fleet) {
                     {"segments", fleet.segments},
                     {"hours", fleet.hours},
                     {"last_contact_utc", fleet.last_contact_utc},
+                    {"trucks_with_alarms", fleet.alarmed.all},
+                    {"alarms", fleet.alarms},
                     {"trucks_silent", fleet.silent.all},
                     {"trucks_faulty", fleet.faulty.all},
                     {"files_refused", fleet.refused},

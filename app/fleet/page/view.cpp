@@ -66,12 +66,12 @@ constexpr const char* kFigures =
     "from trend order by load, moving_mass_kg, level_n, vehicle, truck";
 
 TruckContact contact_of(const Query& q) {
-  return {q.text(0),    q.text(1),    q.text(2),   q.text(3),
-          q.integer(4), q.integer(5), q.number(6), q.integer(7)};
+  return {q.text(0),    q.text(1),    q.text(2),   q.text(3),   q.text(4),
+          q.integer(5), q.integer(6), q.number(7), q.integer(8)};
 }
 constexpr const char* kContacts =
-    "select vehicle, truck, last_contact_utc, newest_trust, segments, faulty_segments, hours, "
-    "last_ns from truck ";
+    "select vehicle, truck, last_contact_utc, newest_trust, newest_alarms, segments, "
+    "faulty_segments, hours, last_ns from truck ";
 
 void read_totals(Connection& connection, Fleet& out) {
   const auto totals = connection.query(
@@ -104,6 +104,11 @@ void read_contacts(Connection& connection, Fleet& out) {
   std::reverse(all.begin(), all.end());
   for (const TruckContact& truck : all)
     if (truck.newest_trust == "data_faulty") add(out.faulty, truck);
+  for (const TruckContact& truck : all) {
+    if (truck.newest_alarms.empty()) continue;
+    add(out.alarmed, truck);
+    for (const std::string& name : parts_of_list(truck.newest_alarms)) ++out.alarms[name];
+  }
 }
 
 struct View {
@@ -199,21 +204,22 @@ std::optional<Car> read_car(Connection& connection, const std::string& vehicle,
   if (out.trucks.empty()) return std::nullopt;
   const auto trends = of_vehicle(
       "select truck, load, moving_mass_kg, segments, usable_segments, faulty_segments, hours, "
-      "first_ns, last_ns, newest_trust, mean_n, mean_std_n, level_n, level_std_n, change_n, "
+      "first_ns, last_ns, newest_trust, newest_alarms, mean_n, mean_std_n, level_n, level_std_n, "
+      "change_n, "
       "change_std_n, trend_n_per_year, trend_std_n_per_year, scatter, stiffness_npm, "
       "stiffness_std_npm from trend where vehicle = $1 order by truck, load, moving_mass_kg");
   while (trends->step()) {
     const Query& q = *trends;
-    const auto scatter = q.cell(18) == Cell::kNull ? std::nullopt : std::optional{q.number(18)};
+    const auto scatter = q.cell(19) == Cell::kNull ? std::nullopt : std::optional{q.number(19)};
     out.trends.push_back(
         {q.text(0),
          {q.text(1), q.number(2), q.integer(3), q.integer(4), q.integer(5), q.number(6),
-          q.integer(7), q.integer(8), q.text(9), estimate_of(q, 10), estimate_of(q, 12),
-          estimate_of(q, 14), estimate_of(q, 16), scatter, estimate_of(q, 19)}});
+          q.integer(7), q.integer(8), q.text(9), q.text(10), estimate_of(q, 11), estimate_of(q, 13),
+          estimate_of(q, 15), estimate_of(q, 17), scatter, estimate_of(q, 20)}});
   }
   const auto segments = of_vehicle(
       "select truck, start_utc, load, moving_mass_kg, start_ns, end_ns, hours, coulomb_n, "
-      "coulomb_std_n, stiffness_npm, stiffness_std_npm, trust, usable from segment "
+      "coulomb_std_n, stiffness_npm, stiffness_std_npm, trust, usable, alarms from segment "
       "where vehicle = $1 order by truck, start_ns, record");
   while (segments->step()) {
     const Query& q = *segments;
@@ -221,7 +227,7 @@ std::optional<Car> read_car(Connection& connection, const std::string& vehicle,
                             q.text(1),
                             {q.text(2), q.number(3), q.integer(4), q.integer(5), q.number(6),
                              estimate_of(q, 7).value_or(Estimate{}), estimate_of(q, 9), q.text(11),
-                             q.integer(12) == 1}});
+                             q.integer(12) == 1, q.text(13)}});
   }
   out.norms = fleet.norms;
   std::copy_if(fleet.outliers.begin(), fleet.outliers.end(), std::back_inserter(out.outliers),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,6 +67,7 @@ struct TruckFigures {
 /// A row of view `truck`.
 struct TruckContact {
   std::string vehicle, truck, last_contact_utc, newest_trust;
+  std::string newest_alarms;  ///< raised in its newest segment
   std::int64_t segments{0}, faulty_segments{0};
   double hours{0.0};
   std::int64_t last_ns{0};
@@ -85,9 +87,11 @@ struct Fleet {
   std::string last_contact_utc;
   std::vector<Norm> norms;
   std::vector<Outlier> outliers;
-  First<TruckContact> silent;         ///< the longest silent first
-  First<TruckContact> faulty;         ///< whose newest segment faults of the data spoil
-  std::vector<TruckFigures> figures;  ///< by load, then by level
+  First<TruckContact> silent;                  ///< the longest silent first
+  First<TruckContact> faulty;                  ///< whose newest segment faults of the data spoil
+  First<TruckContact> alarmed;                 ///< in whose newest segment an alarm was raised
+  std::map<std::string, std::int64_t> alarms;  ///< by name: of how many trucks
+  std::vector<TruckFigures> figures;           ///< by load, then by level
 };
 
 /// Without contact for this long before the fleet's newest one: silent.

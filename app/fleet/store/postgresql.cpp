@@ -20,7 +20,7 @@ select vehicle, truck,
   to_char(to_timestamp(nullif(end_ns, 0) / 1000000000) at time zone 'UTC', 'YYYY-MM-DD HH24:MI:SS') as end_utc,
   to_char(to_timestamp(nullif(start_ns, 0) / 1000000000) at time zone 'UTC', 'YYYY-MM') as month,
   hours, load, moving_mass_kg, coulomb_n, coulomb_std_n, stiffness_npm, stiffness_std_npm, trust,
-  usable, start_ns, end_ns, record, seq, basis, rate_hz, light
+  alarms, usable, start_ns, end_ns, record, seq, basis, rate_hz, light
 from state
 )sql";
 

@@ -17,7 +17,7 @@ select vehicle, truck, datetime(nullif(start_ns, 0) / 1000000000, 'unixepoch') a
   datetime(nullif(end_ns, 0) / 1000000000, 'unixepoch') as end_utc,
   strftime('%Y-%m', nullif(start_ns, 0) / 1000000000, 'unixepoch') as month,
   hours, load, moving_mass_kg, coulomb_n, coulomb_std_n, stiffness_npm, stiffness_std_npm, trust,
-  usable, start_ns, end_ns, record, seq, basis, rate_hz, light
+  alarms, usable, start_ns, end_ns, record, seq, basis, rate_hz, light
 from state
 )sql";
 
