@@ -246,7 +246,9 @@ TEST(BlockStore, ClearForgetsWhatWasMergedAndKeepsOpenBlocks) {
   for (const PlainRow& r : rows) {
     if (r.block == 39) store->absorb(r.block, r.scale, r.row);
   }
+  EXPECT_EQ(store->blocks_per_entry(), 2U);
   store->clear();
+  EXPECT_EQ(store->blocks_per_entry(), 1U) << "as in a new run";
   store->close(39);
   store->finish();
   EXPECT_LT(worst_difference(*store, rows, [](std::int64_t b) { return b == 39 ? 1.0 : 0.0; }),

@@ -70,7 +70,11 @@ class BlockEntries {
   }
   [[nodiscard]] Entry& operator[](std::size_t i) noexcept { return entries_[(head_ + i) % kMost]; }
   [[nodiscard]] std::uint32_t blocks_per_entry() const noexcept { return blocks_per_entry_; }
-  void clear() noexcept { head_ = count_ = 0; }
+  /// As new: entries stand for one block again. No block may be half in.
+  void clear() noexcept {
+    head_ = count_ = 0;
+    blocks_per_entry_ = 1;
+  }
   void keep_oldest(std::size_t entries) noexcept { count_ = std::min(count_, entries); }
   /// Takes the shape of another one, without what is in it.
   void resize_as(const BlockEntries& other) noexcept {
