@@ -3,16 +3,22 @@
 // noise on the displacement (per cent of its rms), the force clean; at the end noise on the force
 // instead. Integrated here, in fine steps with exact stick. The true base and the one true effect
 // are given. Of every coefficient the error; of all, how often truth lies within two deviations.
-//   noise [SEEDS [SYSTEM]]      the table as bench/RESULTS.md has it
+//   noise [SEEDS [SYSTEM [NOISE]]]              the table as bench/RESULTS.md has it
+//   noise --free [SEEDS [SYSTEM [NOISE]]]       what explain names when nothing is given
+//   noise --records FOLDER [SEEDS [SYSTEM [NOISE]]]   the records, for bench/peers/noise.py
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
-#include <cstdlib>
+#include <complex>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -38,7 +44,7 @@ struct State {
   double z{0.0};
 };
 
-/// What beside m x'' and the friction that can hold the mass.
+/// What acts beside m x'', and the friction that can hold the mass.
 struct System {
   const char* name;
   double rate_hz;
@@ -67,6 +73,17 @@ std::vector<System> systems() {
            {"cubic_stiffness"},
            with({{"cubic_stiffness", 2e6}}),
            [=](const State& s) { return linear(s) + 2e6 * s.x * s.x * s.x; },
+           {}},
+          {"VanDerPol",
+           500.0,
+           60.0,
+           {"viscous", "progressive_damping"},
+           {"none"},
+           {{"moving_mass", kMassKg},
+            {"stiffness", kStiffnessNpm},
+            {"viscous", -30.0},
+            {"progressive_damping", 3e5}},
+           [](const State& s) { return kStiffnessNpm * s.x + (3e5 * s.x * s.x - 30.0) * s.v; },
            {}},
           {"Coulomb",
            1000.0,
@@ -110,6 +127,21 @@ class Drive {
     for (const auto& [w, phase] : tones_) out += std::cos(w * time_s + phase);
     return size_n_ * out;
   }
+  /// At `count` instants `step_s` apart, each tone turned on from one to the next.
+  [[nodiscard]] std::vector<double> grid(std::size_t count, double step_s) const {
+    constexpr std::size_t kAnew = 1024;
+    std::vector<double> out(count, 0.0);
+    for (const auto& [w, phase] : tones_) {
+      const std::complex<double> turn = std::polar(1.0, w * step_s);
+      std::complex<double> at;
+      for (std::size_t i = 0; i < count; ++i) {
+        at = i % kAnew == 0 ? std::polar(size_n_, w * static_cast<double>(i) * step_s + phase)
+                            : at * turn;
+        out[i] += at.real();
+      }
+    }
+    return out;
+  }
 
  private:
   static constexpr int kTones = 60;
@@ -130,9 +162,16 @@ Record simulate(const System& system, const Drive& drive) {
   const double h = 1.0 / (system.rate_hz * kFine);
   State s;
   int side = 0;
+  const auto samples = static_cast<std::size_t>(kLengthS * system.rate_hz);
+  const std::vector<double> force_n = drive.grid(2 * kFine * samples + 3, 0.5 * h);
+  const auto force_at = [&](double t) {
+    const double place = t / (0.5 * h);
+    const auto i = static_cast<std::size_t>(std::lround(place));
+    return std::abs(place - static_cast<double>(i)) < 1e-6 ? force_n[i] : drive(t);
+  };
   const auto accel = [&](double t, const State& at) {
     const double held = system.friction ? side * system.friction(std::max(0.0, side * at.v)) : 0.0;
-    return (drive(t) - system.law(at) - held) / kMassKg;
+    return (force_at(t) - system.law(at) - held) / kMassKg;
   };
   const auto z_rate = [&](const State& at) {
     return system.travel_m > 0.0 ? at.v - std::abs(at.v) * at.z / system.travel_m : 0.0;
@@ -153,19 +192,18 @@ Record simulate(const System& system, const Drive& drive) {
                 step);
   };
   Record out;
-  const auto samples = static_cast<int>(kLengthS * system.rate_hz);
-  for (int i = 0; i < samples * kFine; ++i) {
-    const double t = i * h;
+  for (std::size_t i = 0; i < samples * kFine; ++i) {
+    const double t = static_cast<double>(i) * h;
     if (i % kFine == 0) {
       out.x.push_back(s.x);
-      out.force_n.push_back(drive(t));
+      out.force_n.push_back(force_at(t));
     }
     if (!system.friction) {
       s = moved(s, t, h);
       continue;
     }
     if (s.v == 0.0) {
-      const double pull = drive(t) - system.law(s);
+      const double pull = force_at(t) - system.law(s);
       if (std::abs(pull) <= system.friction(0.0)) continue;
       side = pull > 0.0 ? 1 : -1;
     }
@@ -197,35 +235,46 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(out / static_cast<double>(values.size()));
 }
 
-struct Told {
-  app::rig::Explanation explanation;
-  double time_s{0.0};
+struct Noise {
+  double of_x{0.0};
+  double of_force{0.0};
 };
 
-Told explained(const System& system, unsigned seed, double noise_of_x, double noise_of_force) {
+std::string csv_of(const System& system, unsigned seed, const Noise& noise) {
   std::mt19937_64 random{seed};
   const Drive drive{random, system.force_n};
   const Record record = simulate(system, drive);
-  const double of_x = noise_of_x * rms(record.x);
-  const double of_force = noise_of_force * rms(record.force_n);
-  std::normal_distribution<double> noise;
-  std::string text = "time_s,deflection_m,force_n\n";
+  const double of_x = noise.of_x * rms(record.x);
+  const double of_force = noise.of_force * rms(record.force_n);
+  std::normal_distribution<double> normal;
+  std::string out = "time_s,deflection_m,force_n\n";
   for (std::size_t i = 0; i < record.x.size(); ++i)
-    text += fmt::format("{:.6f},{:.12g},{:.12g}\n", static_cast<double>(i) / system.rate_hz,
-                        record.x[i] + of_x * noise(random),
-                        record.force_n[i] + of_force * noise(random));
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("noise_{}_{}.csv", system.name, seed))
-          .string();
-  std::ofstream{path} << text;
+    out += fmt::format("{:.6f},{:.12g},{:.12g}\n", static_cast<double>(i) / system.rate_hz,
+                       record.x[i] + of_x * normal(random),
+                       record.force_n[i] + of_force * normal(random));
+  return out;
+}
+
+struct Told {
+  app::rig::Explanation explanation;
+  double time_s{0.0};  ///< of the processor
+};
+
+/// `free`: nothing but the mass and the spring is given.
+Told explained(const System& system, unsigned seed, const Noise& noise, bool free) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                     fmt::format("noise_{}_{}.csv", system.name, ::getpid());
+  std::ofstream{path} << csv_of(system, seed, noise);
   app::Config config;
-  config.model.base = system.base;
-  config.model.candidates = system.effects;
+  if (!free) {
+    config.model.base = system.base;
+    config.model.candidates = system.effects;
+  }
   config.model.inertia = "identify";
   config.model.stiffness = "identify";
-  const auto start = std::chrono::steady_clock::now();
-  Told out{app::rig::explain(config, {{path}, {}, "", false})};
-  out.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::clock_t start = std::clock();
+  Told out{app::rig::explain(config, {{path.string()}, {}, "", false})};
+  out.time_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   std::filesystem::remove(path);
   return out;
 }
@@ -236,56 +285,109 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void look(const System& system, unsigned seeds, double of_x, double of_force) {
-  std::map<std::string, std::vector<double>> errors;
+/// Errors of all seeds, per cent of the truth.
+struct Errors {
+  std::map<std::string, std::vector<double>> each;
   std::vector<double> worst;
-  std::vector<double> times_s;
-  int within = 0;
-  int told = 0;
-  int by_motion = 0;
-  for (unsigned seed = 1; seed <= seeds; ++seed) {
-    const Told told_of = explained(system, seed, of_x, of_force);
-    const app::rig::Explanation& found = told_of.explanation;
-    times_s.push_back(told_of.time_s);
+  int within{0};
+  int told{0};
+
+  void take(const System& system, const std::vector<app::Parameter>& found) {
     double most = 0.0;
-    by_motion += found.final.free_run.by_motion ? 1 : 0;
     for (const auto& [name, truth] : system.truth) {
-      const auto p =
-          std::find_if(found.final.parameters.begin(), found.final.parameters.end(),
-                       [&, key = name](const app::Parameter& each) { return each.name == key; });
-      if (p == found.final.parameters.end()) {
-        errors[name].push_back(std::numeric_limits<double>::infinity());
-        most = std::numeric_limits<double>::infinity();
-        continue;
-      }
-      const double error = 100.0 * std::abs(p->value / truth - 1.0);
-      errors[name].push_back(error);
+      const auto p = std::find_if(found.begin(), found.end(),
+                                  [&, key = name](const auto& other) { return other.name == key; });
+      const double error = p == found.end() ? std::numeric_limits<double>::infinity()
+                                            : 100.0 * std::abs(p->value / truth - 1.0);
+      each[name].push_back(error);
       most = std::max(most, error);
+      if (p == found.end()) continue;
       within += std::abs(p->value - truth) <= 2.0 * p->std ? 1 : 0;
       ++told;
     }
     worst.push_back(most);
   }
-  fmt::print("| {} | {:g} | {:g} | {:.3g} |", system.name, 100.0 * of_x, 100.0 * of_force,
-             median(worst));
-  for (const auto& [name, list] : errors) fmt::print(" {} {:.2g};", name, median(list));
-  fmt::print(" | {} of {} | {} of {} | {:.1f} |\n", within, told, by_motion, seeds,
+};
+
+void look(const System& system, unsigned seeds, const Noise& noise) {
+  Errors errors;
+  std::vector<double> times_s;
+  int by_motion = 0;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const Told told = explained(system, seed, noise, false);
+    times_s.push_back(told.time_s);
+    by_motion += told.explanation.final.free_run.by_motion ? 1 : 0;
+    errors.take(system, told.explanation.final.parameters);
+  }
+  fmt::print("| {} | {:g} | {:g} | {:.3g} |", system.name, 100.0 * noise.of_x,
+             100.0 * noise.of_force, median(errors.worst));
+  for (const auto& [name, list] : errors.each) fmt::print(" {} {:.2g};", name, median(list));
+  fmt::print(" | {} of {} | {} of {} | {:.1f} |\n", errors.within, errors.told, by_motion, seeds,
              median(times_s));
   std::fflush(stdout);
 }
 
+/// What `explain` names when nobody tells it anything.
+void look_freely(const System& system, unsigned seeds, const Noise& noise) {
+  std::map<std::string, int> answers;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const app::rig::Explanation found = explained(system, seed, noise, true).explanation;
+    std::string answer = fmt::format("{}: {}", found.verdict(), fmt::join(found.base.terms, ", "));
+    for (const app::Step& step : found.steps) answer += " + " + step.effect;
+    ++answers[answer];
+  }
+  fmt::print("| {} | {:g} |", system.name, 100.0 * noise.of_x);
+  for (const auto& [answer, count] : answers) fmt::print(" {} x {};", count, answer);
+  fmt::print(" |\n");
+  std::fflush(stdout);
+}
+
+/// The records of the table for another program: SYSTEM_NOISE_FORCE_SEED.csv and the truth.
+void write_records(const System& system, unsigned seeds, const Noise& noise,
+                   const std::filesystem::path& folder) {
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const std::string name = fmt::format("{}_{:g}_{:g}_{}", system.name, 100.0 * noise.of_x,
+                                         100.0 * noise.of_force, seed);
+    std::ofstream file{folder / (name + ".csv")};
+    for (const auto& [parameter, truth] : system.truth)
+      file << fmt::format("# {} {:.17g}\n", parameter, truth);
+    file << csv_of(system, seed, noise);
+  }
+}
+
+constexpr std::array kNoises{Noise{0.0, 0.0}, Noise{0.001, 0.0}, Noise{0.01, 0.0}, Noise{0.05, 0.0},
+                             Noise{0.0, 0.05}};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const unsigned seeds = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 5;
-  const std::string only = argc > 2 ? argv[2] : "";
-  fmt::print(
-      "| system | noise of x, % | of the force, % | worst error, % | each, median % | within two "
-      "deviations | by its motion | s a record |\n|---|---|---|---|---|---|---|---|\n");
-  for (const System& system : systems()) {
-    if (!only.empty() && only != system.name) continue;
-    for (const double noise : {0.0, 0.001, 0.01, 0.05}) look(system, seeds, noise, 0.0);
-    look(system, seeds, 0.0, 0.05);
-  }
+  const std::vector<std::string> words{argv + 1, argv + argc};
+  const bool writes = !words.empty() && words[0] == "--records";
+  const bool freely = !words.empty() && words[0] == "--free";
+  const std::size_t first = writes ? 2 : freely ? 1 : 0;
+  const auto word = [&](std::size_t i, const char* otherwise) {
+    return words.size() > first + i ? words[first + i] : std::string{otherwise};
+  };
+  const auto seeds = static_cast<unsigned>(std::stoul(word(0, "5")));
+  const std::string only = word(1, "");
+  const std::string level = word(2, "");
+  if (writes) std::filesystem::create_directories(words.at(1));
+  if (freely)
+    fmt::print("| system | noise of x, % | what a free explain says |\n|---|---|---|\n");
+  else if (!writes)
+    fmt::print(
+        "| system | noise of x, % | of the force, % | worst error, % | each, median % | within two "
+        "deviations | by its motion | processor s a record |\n|---|---|---|---|---|---|---|---|\n");
+  for (const System& system : systems())
+    for (const Noise& noise : kNoises) {
+      if (!only.empty() && only != system.name) continue;
+      if (!level.empty() && std::abs(100.0 * noise.of_x - std::stod(level)) > 1e-9) continue;
+      if (writes)
+        write_records(system, seeds, noise, words.at(1));
+      else if (!freely)
+        look(system, seeds, noise);
+      else if (noise.of_force == 0.0)
+        look_freely(system, seeds, noise);
+    }
   return 0;
 }

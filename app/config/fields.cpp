@@ -8,9 +8,10 @@ namespace dampline::app {
 namespace {
 
 /// Names of the physical effects that a model may contain or lack.
-constexpr std::array<std::string_view, 22> kEffects{"viscous",
+constexpr std::array<std::string_view, 23> kEffects{"viscous",
                                                     "asymmetric_viscous",
                                                     "quadratic_damping",
+                                                    "progressive_damping",
                                                     "coulomb",
                                                     "asymmetric_coulomb",
                                                     "offset_force",

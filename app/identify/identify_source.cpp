@@ -16,6 +16,7 @@
 #include "app/record/source_kind.hpp"
 #include "app/rig/identify.hpp"
 #include "app/rig/record.hpp"
+#include "app/rig/result.hpp"
 #include "app/text/format.hpp"
 #include "drivers/text/quote.hpp"
 
@@ -90,6 +91,11 @@ Identified identify_truck(const Config& config, const SourceOptions& source, Sou
 
 Identified identify_rig_file(const Config& config, const SourceOptions& source,
                              bool show_progress) {
+  if (const auto searched = rig::searched_base(config.model); !searched.empty())
+    throw UsageError{fmt::format(
+        "[model] base: found \"{}\", whose size a search finds; expected `dampline identify` or "
+        "`dampline explain` of this record alone",
+        searched.front())};
   Progress progress{show_progress};
   Identified out;
   const rig::Record record = rig::csv_record(source.path, config.input, source.skip_bad_lines);

@@ -38,6 +38,8 @@ constexpr std::array kTexts{
     TermText{Kind::kSpeed, "speed", "asymmetric_viscous", "|v|", "N s/m", "", ""},
     TermText{Kind::kSpeedSquared, "speed_squared", "quadratic_damping", "v |v|", "N s^2/m^2", "",
              ""},
+    TermText{Kind::kSquareVelocity, "square_velocity", "progressive_damping", "x^2 v", "N s/m^3",
+             "", ""},
     TermText{Kind::kSign, "sign", "coulomb", "tanh(v / a)", "N", "m/s", ""},
     TermText{Kind::kFading, "fading", "stribeck", "tanh(v / a) exp(-|v| / b)", "N", "m/s", "m/s"},
     TermText{Kind::kFadingSquare, "fading_square", "stribeck", "tanh(v / a) exp(-(v / b)^2)", "N",

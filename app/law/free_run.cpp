@@ -9,9 +9,10 @@ namespace dampline::app::law {
 namespace {
 
 constexpr double kLongestStep = 0.08;  // radians of the fastest oscillation
+constexpr double kSeen = 1.5;          // radians of it in a sample: a fourth of a turn
 constexpr int kMostSteps = 32;
-constexpr Eigen::Index kTaps = 12;  // samples on either side, from which a force between is made
-constexpr double kWindow = 9.0;     // Kaiser's beta
+constexpr Eigen::Index kTaps = 24;  // samples on either side, from which a force between is made
+constexpr double kWindow = 13.0;    // Kaiser's beta
 constexpr int kMostEvents = 40;     // between two samples
 constexpr int kSecants = 30;
 constexpr double kWithin = 1e-13;  // of the greatest speed or force about an event
@@ -72,7 +73,8 @@ double stiffness_of(const Term& t, double reach_m) {
   }
 }
 
-int steps_for(const Law& law, double interval_s) {
+/// Of the fastest oscillation or decay, in a sample.
+double radians_of(const Law& law, double interval_s) {
   double most = 0.0;
   for (const Term& t : law.terms) {
     most += stiffness_of(t, 0.0) / law.mass_kg;
@@ -80,7 +82,11 @@ int steps_for(const Law& law, double interval_s) {
       most += std::pow(std::abs(t.coefficient) / (t.column.a * law.mass_kg), 2);
     if (t.column.kind == Kind::kVelocity) most += std::pow(t.coefficient / law.mass_kg, 2);
   }
-  const double steps = std::ceil(std::sqrt(most) * interval_s / kLongestStep);
+  return std::sqrt(most) * interval_s;
+}
+
+int steps_for(const Law& law, double interval_s) {
+  const double steps = std::ceil(radians_of(law, interval_s) / kLongestStep);
   return static_cast<int>(std::clamp(steps, 1.0, static_cast<double>(kMostSteps)));
 }
 
@@ -157,6 +163,10 @@ bool FreeRun::can(const Law& law) noexcept {
            return t.column.time == Regressor::Time::kSteady && t.column.kind != Kind::kAttached &&
                   !is_inertia(t.column.kind);
          });
+}
+
+bool FreeRun::is_seen(const Law& law, double interval_s) noexcept {
+  return radians_of(law, interval_s) < kSeen;
 }
 
 FreeRun::FreeRun(const Law& law, const Input& input, int refinement)

@@ -24,7 +24,7 @@ struct Law {
 };
 
 /// A force between its samples, band-limited: eight times as many by a windowed sinc, a cubic
-/// between those. Up to 0.3 of the sample rate to 1e-4 of it.
+/// between those. Up to 0.3 of the sample rate to 1e-5 of it.
 class Input {
  public:
   static constexpr Eigen::Index kFine = 8;
@@ -63,6 +63,9 @@ class FreeRun {
  public:
   /// Whether all terms can be moved: none that changes with time, and no mass on the mass.
   [[nodiscard]] static bool can(const Law& law) noexcept;
+  /// Whether the samples see the law's own motion, a fourth of a turn each at most; the mass of a
+  /// faster one follows its force at once.
+  [[nodiscard]] static bool is_seen(const Law& law, double interval_s) noexcept;
   /// Precondition: can(law). `refinement`: times as many steps as are thought enough.
   FreeRun(const Law& law, const Input& input, int refinement = 1);
   /// From sample i to the next.

@@ -45,6 +45,8 @@ double value_at(const Regressor& c, double x, double v) noexcept {
       return std::abs(v);
     case Kind::kSpeedSquared:
       return v * std::abs(v);
+    case Kind::kSquareVelocity:
+      return x * x * v;
     case Kind::kSign:
       return softened_sign(v / c.a);
     case Kind::kFading:

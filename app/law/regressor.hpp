@@ -20,6 +20,7 @@ struct Regressor {
     kAcceleration,         ///< v' by a central difference, where nothing is filtered
     kSpeed,                ///< |v|
     kSpeedSquared,         ///< v |v|
+    kSquareVelocity,       ///< x^2 v
     kSign,                 ///< tanh(v / a)
     kFading,               ///< tanh(v / a) exp(-|v| / b): friction that falls with speed
     kFadingSquare,         ///< tanh(v / a) exp(-(v / b)^2)

@@ -73,7 +73,7 @@ class Shooting {
     period_s_ = speeds > 0.0 ? 2.0 * std::numbers::pi * std::sqrt(squares / speeds) : 1.0;
   }
 
-  Shot fit(VectorXd unknowns);
+  Shot fit(VectorXd unknowns, Reach reach);
   Shot follow(const VectorXd& unknowns, double segment_s);
 
  private:
@@ -416,12 +416,13 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   return out;
 }
 
-Shot Shooting::fit(VectorXd unknowns) {
+Shot Shooting::fit(VectorXd unknowns, Reach reach) {
   Index longest = 0;
   for (const Drive& d : drives_) longest = std::max(longest, d.deflection_m.size());
   auto length =
       std::max(kFewestSamples, static_cast<Index>(kFirstPeriods * period_s_ / interval_s()));
   length = std::min(length, longest);
+  if (reach == Reach::kFirstSegments) longest = length;
   cut(length);
   if (!settle(unknowns)) return {};
   double squares = 0.0;
@@ -463,8 +464,8 @@ Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
 }  // namespace
 
 Shot shoot(const LawOf& law_of, const VectorXd& start, const VectorXd& scale,
-           const std::vector<bool>& positive, const std::vector<Drive>& drives) {
-  return Shooting{law_of, scale, positive, drives}.fit(start);
+           const std::vector<bool>& positive, const std::vector<Drive>& drives, Reach reach) {
+  return Shooting{law_of, scale, positive, drives}.fit(start, reach);
 }
 
 Shot follow(const LawOf& law_of, const VectorXd& unknowns, const std::vector<Drive>& drives,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct Shot {
   std::size_t segments{0};
 };
 
+/// How far segments grow: to the whole record, or not at all, which is quick and less certain.
+enum class Reach : std::uint8_t { kWhole, kFirstSegments };
+
 /// Multiple shooting: the unknowns, and the state at the start of each segment, that leave least of
 /// the measured deflection (output error; Bock, "Recent advances in parameter identification
 /// techniques for O.D.E.", 1983), by Levenberg and Marquardt with the states eliminated segment by
@@ -40,7 +44,7 @@ struct Shot {
 /// first steps, all above 0; `positive`: unknowns that stay above 0.
 [[nodiscard]] Shot shoot(const LawOf& law_of, const Eigen::VectorXd& start,
                          const Eigen::VectorXd& scale, const std::vector<bool>& positive,
-                         const std::vector<Drive>& drives);
+                         const std::vector<Drive>& drives, Reach reach = Reach::kWhole);
 
 /// The unknowns as they are: only the states at the segments' starts fit. `segment_s`: as shoot()
 /// had it.

@@ -122,6 +122,10 @@ constexpr std::array kEffects{
         "Look for rubber in the suspension (pads, bushes, liners), or a hydraulic damper on soft "
         "mounts.",
         "Look for rubber, or a hydraulic damper on soft mounts."},
+    Advice{"progressive_damping", "Damping that grows with the square of deflection",
+           "No effect of a truck: look at what drives or holds the suspension.",
+           "Below zero about the middle it drives the motion: look for what feeds it (a control, a "
+           "flow)."},
     Advice{"progressive_friction", "Friction that grows with deflection",
            "Load-dependent friction (wedges, links) works: this is its design. Where it should be "
            "constant, check wedges, "

@@ -25,6 +25,10 @@ class Job {
   Job(const Record& record, const Config& config, const Progress& progress)
       : record_{record}, model_{config.model}, progress_{progress} {
     findings_.terms = terms_of(model_);
+    // Of a base of other effects alone: counts and curve need a term; explain puts its law there.
+    core::Terms& terms = findings_.terms;
+    if (!searched_base(model_).empty() && term_names(terms).empty())
+      terms.coulomb = core::Branches::kCommon;
   }
 
   RunResult run() {

@@ -2,10 +2,12 @@
 #include "app/rig/result.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -30,7 +32,24 @@ constexpr std::array kBaseEffects{
     BaseEffect{"viscous", "viscous", &core::Terms::viscous, core::Branches::kCommon},
     BaseEffect{"asymmetric_viscous", "viscous", &core::Terms::viscous, core::Branches::kSeparate}};
 
+/// Effects that a base may have beside the terms.
+constexpr std::array<std::string_view, 10> kSearched{"quadratic_damping",
+                                                     "progressive_damping",
+                                                     "progressive_friction",
+                                                     "stribeck",
+                                                     "presliding_hysteresis",
+                                                     "backlash",
+                                                     "bump_stop",
+                                                     "cubic_stiffness",
+                                                     "quadratic_stiffness",
+                                                     "asymmetric_stiffness"};
+
+bool is_searched(std::string_view name) {
+  return std::find(kSearched.begin(), kSearched.end(), name) != kSearched.end();
+}
+
 void add_effect(const std::string& name, core::Terms& terms) {
+  if (is_searched(name)) return;
   if (name == "offset_force") {
     terms.offset = true;
     return;
@@ -40,8 +59,8 @@ void add_effect(const std::string& name, core::Terms& terms) {
   if (found == kBaseEffects.end())
     throw UsageError{fmt::format(
         "[model] base: found \"{}\", expected of a rig: viscous, asymmetric_viscous, coulomb, "
-        "asymmetric_coulomb, offset_force",
-        name)};
+        "asymmetric_coulomb, offset_force, {}",
+        name, fmt::join(kSearched, ", "))};
   core::Branches& branches = terms.*(found->term);
   if (branches != core::Branches::kNone && branches != found->branches)
     throw UsageError{fmt::format(
@@ -171,6 +190,12 @@ core::Terms terms_of(const ModelConfig& model) {
   if (model.base.empty() && !terms.inertia && !terms.stiffness)
     throw UsageError{"[model] base: found no effect, expected at least one"};
   return terms;
+}
+
+std::vector<std::string> searched_base(const ModelConfig& model) {
+  std::vector<std::string> out;
+  std::copy_if(model.base.begin(), model.base.end(), std::back_inserter(out), is_searched);
+  return out;
 }
 
 std::vector<std::string> term_names(const core::Terms& terms) {

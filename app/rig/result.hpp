@@ -19,6 +19,10 @@ namespace dampline::app::rig {
 /// that exclude each other.
 [[nodiscard]] core::Terms terms_of(const ModelConfig& model);
 
+/// Effects of [model] base that are no term: `explain` finds their lengths and speeds, and puts
+/// them into the base.
+[[nodiscard]] std::vector<std::string> searched_base(const ModelConfig& model);
+
 /// Effect names of the terms, the linear ones first: "moving_mass", "linear spring", "coulomb", ...
 [[nodiscard]] std::vector<std::string> term_names(const core::Terms& terms);
 

@@ -29,6 +29,7 @@
 #include "app/record/rate.hpp"
 #include "app/report/page.hpp"
 #include "app/rig/record.hpp"
+#include "app/rig/result.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/json.hpp"
 #include "app/run/provenance.hpp"
@@ -183,10 +184,27 @@ std::filesystem::path blackbox_of(const IdentifyFlags& options,
   return options.blackbox.empty() ? place / "blackbox" : std::filesystem::path{options.blackbox};
 }
 
+/// A rig whose base has effects with lengths and speeds of their own: the search finds them, and
+/// looks for nothing else.
+Identified identify_by_search(Config config, const IdentifyFlags& options) {
+  config.model.candidates.clear();
+  const SourceOptions& source = options.source;
+  const rig::Explanation found =
+      rig::explain(config, {{source.path}, {}, "", source.skip_bad_lines});
+  Identified out;
+  out.inputs = {describe_record(source.path)};
+  out.result =
+      rig::identify(rig::csv_record(source.path, config.input, source.skip_bad_lines), config);
+  rig::conclude(found, out.result);
+  return out;
+}
+
 /// A record, or a live interface until it ends.
 Identified find(const IdentifyFlags& options, const Config& config, SourceKind kind,
                 const std::filesystem::path& place) {
   const bool progress = options.show_progress();
+  if (kind == SourceKind::kRigRows && !rig::searched_base(config.model).empty())
+    return identify_by_search(config, options);
   if (kind != SourceKind::kInterface)
     return identify_source(config, options.source, kind, progress);
   return identify_live(

@@ -139,6 +139,36 @@ TEST(ADrivenMass, HasASpringThatHardens) {
   expect_the_rest(found);
 }
 
+TEST(ADrivenMass, HasAHardSpringInItsBase) {
+  Config config;
+  config.model.base = {"viscous", "cubic_stiffness"};
+  config.model.inertia = config.model.stiffness = "identify";
+  const rig::Explanation found =
+      dampline::test::explained(record([](double x, double) { return 4.4e9 * x * x * x; }), config);
+  EXPECT_TRUE(found.steps.empty()) << summarize(found);
+  EXPECT_EQ(std::string{found.verdict()}, "complete");
+  EXPECT_EQ(found.base.terms.back(), "cubic_stiffness");
+  EXPECT_NEAR(value_of(found, "cubic_stiffness"), 4.4e9, 0.02 * 4.4e9);
+  expect_the_rest(found);
+}
+
+TEST(ADrivenMass, IsMovedByItsOwnDampingAsVanDerPols) {
+  constexpr double kDrivingNspm = 26.0;
+  constexpr double kProgressive = 1e8;
+  Config config;
+  config.model.base = {"viscous"};
+  config.model.inertia = config.model.stiffness = "identify";
+  const rig::Explanation found = dampline::test::explained(
+      record([](double x, double v) { return (kProgressive * x * x - kDrivingNspm) * v; }, {},
+             10e-6),
+      config);
+  ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+  EXPECT_EQ(found.steps[0].effect, "progressive_damping");
+  EXPECT_EQ(std::string{found.verdict()}, "explained");
+  EXPECT_NEAR(value_of(found, "progressive_damping"), kProgressive, 0.01 * kProgressive);
+  EXPECT_NEAR(value_of(found, "viscous"), kViscous - kDrivingNspm, 0.2);
+}
+
 TEST(ADrivenMass, IsToldFromADamperWithoutBeingDeclared) {
   const Law hard = [](double x, double) { return 4.4e9 * x * x * x; };
   const rig::Explanation found = explained(hard, "auto");

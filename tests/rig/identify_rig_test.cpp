@@ -203,7 +203,7 @@ TEST_F(IdentifyRig, RefusesStandardInputBecauseItReadsTheRecordAgain) {
 
 TEST_F(IdentifyRig, RefusesAModelThatARigCannotHave) {
   write(5000);
-  config_.model.base = {"stribeck"};
+  config_.model.base = {"time_skew"};
   EXPECT_THROW((void)identify(), app::UsageError);
   config_.model.base = {"asymmetric_coulomb", "offset_force"};
   EXPECT_THROW((void)identify(), app::UsageError);

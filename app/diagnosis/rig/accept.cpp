@@ -20,8 +20,7 @@ bool passes(const State& s, const Ranked& top, double before_nmse) {
   if (top.needs_excess && before_nmse < kIncompleteAbove * floor.nmse) return false;
   if (!sure && before_nmse < (1.0 + unsure) * floor.nmse) return false;
   if (top.gain * before_nmse < kOfExcess * (before_nmse - floor.nmse)) return false;
-  if (s.chosen.empty())
-    return top.gain > kClearGain || (top.gain > kSmallGain && top.t > kSignificant);
+  if (!has_step(s)) return top.gain > kClearGain || (top.gain > kSmallGain && top.t > kSignificant);
   const bool rest =
       top.gain > kClearGain && top.gain * before_nmse > kRest * (before_nmse - floor.nmse);
   // A memory's form is never whole: what it leaves has the look of much else.

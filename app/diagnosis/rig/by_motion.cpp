@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "app/diagnosis/rig/law.hpp"
@@ -13,12 +15,25 @@
 namespace dampline::app::rig {
 namespace {
 
-std::vector<law::Drive> drives_of(const std::vector<Series>& records) {
+constexpr law::Reach kQuick = law::Reach::kFirstSegments;
+
+/// The records, or of each what holds so many periods of the motion.
+std::vector<law::Drive> drives_of(const std::vector<Series>& records, double periods = 0.0) {
   std::vector<law::Drive> out;
   for (const Series& s : records) {
+    Eigen::Index count = s.size();
+    const Eigen::ArrayXd x = s.deflection_m.array() - s.deflection_m.mean();
+    const double period_s =
+        2.0 * std::numbers::pi * std::sqrt(x.square().sum() / s.velocity_mps.squaredNorm());
+    if (periods > 0.0 && std::isfinite(period_s))
+      count = std::min(
+          count, static_cast<Eigen::Index>(periods * period_s /
+                                           (s.interval_s * static_cast<double>(records.size()))));
     Eigen::VectorXd counts;
-    if (s.left_out.size() == s.size()) counts = (s.left_out.array() == 0.0).cast<double>();
-    out.push_back({law::Input{s.force_n, s.interval_s}, s.deflection_m, s.velocity_mps, counts});
+    if (s.left_out.size() == s.size())
+      counts = (s.left_out.head(count).array() == 0.0).cast<double>();
+    out.push_back({law::Input{s.force_n.head(count), s.interval_s}, s.deflection_m.head(count),
+                   s.velocity_mps.head(count), counts});
   }
   return out;
 }
@@ -80,7 +95,7 @@ struct Moved {
 };
 
 Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start, const Scale& scale,
-           const std::vector<law::Drive>& drives) {
+           const std::vector<law::Drive>& drives, law::Reach reach = law::Reach::kWhole) {
   Moved out{model, joint, {}};
   const Eigen::VectorXd rows = unknowns_of(model, joint);
   Eigen::VectorXd scales{rows.size()};
@@ -99,7 +114,7 @@ Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
     positive.push_back(!shape);
     if (shape) scales[i] = 1.0;
   }
-  out.shot = law::shoot(law_at(model, joint, scale), start, scales, positive, drives);
+  out.shot = law::shoot(law_at(model, joint, scale), start, scales, positive, drives, reach);
   return out;
 }
 
@@ -184,40 +199,82 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
     out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
 }
 
+/// Its other forms, and what screening makes of them: where the best of them goes clearly better
+/// over a part of the records, where it has come.
+std::optional<Moved> better_form(const Moved& first, std::vector<Series>& records,
+                                 const Scale& scale, double noise_m) {
+  const std::vector<Form> forms = other_forms(first.model, scale);
+  if (forms.empty()) return std::nullopt;
+  const std::vector<law::Drive> part = drives_of(records, kScreened);
+  Moved best = move(first.model, first.joint, first.shot.unknowns, scale, part, kQuick);
+  if (!best.shot.ok) return std::nullopt;
+  bool other = false;
+  const auto take = [&](Moved there, double enough) {
+    if (!there.shot.ok || !(there.shot.held_out_nmse < enough * best.shot.held_out_nmse)) return;
+    best = std::move(there);
+    other = true;
+  };
+  std::vector<Moved> starts;
+  for (const Form& form : forms) {
+    Model there = form.model;
+    const Joint by_rows = fit_jointly(there, records, first.model.ridge, scale);
+    if (!by_rows.ok) continue;
+    starts.push_back(move(there, by_rows, unknowns_of(there, by_rows), scale, part, kQuick));
+    take(starts.back(), form.plainer ? kPlainer : kOtherForm);
+  }
+  // Sticking makes many minima: from where the best form has come, and with other speeds.
+  starts.push_back(first);
+  const Moved from = best;
+  for (const Moved& form : starts)
+    for (const double times : kSpeeds) {
+      const bool same = kinds_of(form.model) == kinds_of(from.model);
+      if (follows(best.shot, noise_m) || form.joint.size() != from.joint.size() ||
+          same != (times != 1.0))
+        continue;
+      take(move(form.model, form.joint, with_speeds(from, times), scale, part, kQuick), kOtherForm);
+    }
+  if (!other) return std::nullopt;
+  return best;
+}
+
+bool can_move(const std::vector<Series>& records, const Model& model, const Scale& scale) {
+  const std::optional<law::Law> law = law_of(model, scale);
+  return law && law::FreeRun::is_seen(*law, records.front().interval_s) &&
+         std::none_of(records.begin(), records.end(), [](const Series& s) { return s.has_gap; });
+}
+
+double noise_of(const std::vector<Series>& records) {
+  double out = 0.0;
+  for (const Series& s : records) out = std::max(out, s.noise_m);
+  return out;
+}
+
 }  // namespace
+
+Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model) {
+  Screened out;
+  if (!can_move(records, model, scale)) return out;
+  const Joint joint = fit_jointly(model, records, model.ridge, scale);
+  if (!joint.ok) return out;
+  const Moved moved =
+      move(model, joint, unknowns_of(model, joint), scale, drives_of(records, kScreened), kQuick);
+  if (!moved.shot.ok) return out;
+  return {true, follows(moved.shot, noise_of(records)), moved.shot.held_out_nmse};
+}
 
 void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& model,
                       Joint& joint) {
-  const bool gaps =
-      std::any_of(records.begin(), records.end(), [](const Series& s) { return s.has_gap; });
-  if (!joint.ok || gaps || !law_of(model, scale)) return;
+  if (!joint.ok || !can_move(records, model, scale)) return;
   const std::vector<law::Drive> drives = drives_of(records);
-  double noise_m = 0.0;
-  for (const Series& s : records) noise_m = std::max(noise_m, s.noise_m);
+  const double noise_m = noise_of(records);
   Moved best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;
-  std::vector<Moved> forms{best};
-  const auto take = [&](const Moved& other, double enough) {
-    if (other.shot.ok && other.shot.held_out_nmse < enough * best.shot.held_out_nmse) best = other;
-  };
-  for (const Form& form : other_forms(model, scale)) {
-    Model there = form.model;
-    const Joint by_rows = fit_jointly(there, records, model.ridge, scale);
-    if (!by_rows.ok) continue;
-    forms.push_back(move(there, by_rows, unknowns_of(there, by_rows), scale, drives));
-    take(forms.back(), form.plainer ? kPlainer : kOtherForm);
+  if (const std::optional<Moved> other = better_form(best, records, scale, noise_m)) {
+    Moved there = move(other->model, other->joint, other->shot.unknowns, scale, drives);
+    const double enough = there.joint.size() < best.joint.size() ? kPlainer : kOtherForm;
+    if (there.shot.ok && there.shot.held_out_nmse < enough * best.shot.held_out_nmse)
+      best = std::move(there);
   }
-  const auto is_followed = [&] { return follows(best.shot, noise_m); };
-  // Sticking makes many minima: from where the best form has come, and with other speeds.
-  const Moved from = best;
-  for (const Moved& form : forms)
-    for (const double times : kSpeeds) {
-      const bool same = form.model.columns.size() == from.model.columns.size() &&
-                        kinds_of(form.model) == kinds_of(from.model);
-      if (is_followed() || form.joint.size() != from.joint.size() || same != (times != 1.0))
-        continue;
-      take(move(form.model, form.joint, with_speeds(from, times), scale, drives), kOtherForm);
-    }
   judge(best, drives, scale, noise_m);
   if (best.model.free_run.by_motion) {
     const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);

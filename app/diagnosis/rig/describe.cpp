@@ -27,6 +27,7 @@ struct First {
 };
 constexpr std::array kFirst{
     First{"quadratic_damping", "quadratic_damping", "N s^2/m^2"},
+    First{"progressive_damping", "progressive_damping", "N s/m^3"},
     First{"coulomb", "coulomb", "N"},
     First{"offset_force", "offset", "N"},
     First{"stribeck", "stribeck_force", "N"},

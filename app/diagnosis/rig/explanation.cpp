@@ -177,6 +177,9 @@ bool Explanation::is_complete() const noexcept {
   const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
   if (!alike.empty() || !impossible.empty()) return false;
   if (final.free_run.by_motion && final.free_run.followed) return true;
+  if (final.free_run.segments > 0 && !final.free_run.followed &&
+      std::min(final.free_run.nmse_of_motion, final.free_run.nmse_of_equations) > kMisses)
+    return false;
   if (nmse < kNegligible) return true;
   const double structured = std::max(signature.travel_share, signature.surface_share);
   const bool noise = final.floor_noise_share > kStructured;

@@ -36,8 +36,8 @@ bool is_steady(const std::vector<Series>& records) {
 }
 
 bool needs_speeds(const std::string& effect) {
-  return effect == "viscous" || effect == "asymmetric_viscous" || effect == "quadratic_damping" ||
-         effect == "stribeck";
+  return effect == "viscous" || effect == "progressive_damping" || effect == "asymmetric_viscous" ||
+         effect == "quadratic_damping" || effect == "stribeck";
 }
 
 void add_memory(Library& out, const Scale& scale) {
@@ -80,6 +80,8 @@ void add_damping(Library& out, const core::Terms& base) {
     out.candidates.push_back({"asymmetric_viscous", 0.0, {speed}, 0});
   out.candidates.push_back(
       {"quadratic_damping", 0.0, {out.add({Kind::kSpeedSquared, 0.0, 0.0})}, 1});
+  out.candidates.push_back(
+      {"progressive_damping", 0.0, {out.add({Kind::kSquareVelocity, 0.0, 0.0})}, 0});
 }
 
 void add_stiffness(Library& out, const Scale& scale) {
@@ -172,6 +174,7 @@ Library make_library(const Config& config, const Scale& scale) {
   add_friction(out, scale);
   add_stiffness(out, scale);
   add_memory(out, scale);
+  out.base_searched = searched_base(config.model);
   const auto& wanted = config.model.candidates;
   const auto is_wanted = [&](const std::string& name) {
     return std::find(wanted.begin(), wanted.end(), "all") != wanted.end() ||
@@ -187,6 +190,8 @@ Library make_library(const Config& config, const Scale& scale) {
   }
   if (!out.base_offset) out.candidates.push_back({"offset_force", 0.0, {out.offset}, 0});
   std::erase_if(out.candidates, [&](const Candidate& c) {
+    const auto& kept = out.base_searched;
+    if (std::find(kept.begin(), kept.end(), c.effect) != kept.end()) return false;
     return !is_wanted(c.effect) || (scale.steady && needs_speeds(c.effect));
   });
   return out;

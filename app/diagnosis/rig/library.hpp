@@ -46,6 +46,7 @@ struct Library {
   ColumnSet base;                      ///< beside the friction
   bool base_friction{false};
   std::vector<std::string> base_terms;
+  std::vector<std::string> base_searched;  ///< effects of the base that are candidates, too
   Eigen::Index offset{0};
   Eigen::Index spring{0};
   Eigen::Index mass{0};

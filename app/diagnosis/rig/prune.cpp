@@ -36,7 +36,8 @@ void backward(State& s) {
   for (std::size_t i = 0; s.chosen.size() > 1 && i < s.chosen.size();) {
     const double with = error(s);
     const Chosen removed = s.chosen[i];
-    if (is_memory(removed.candidate.effect) || removed.candidate.columns.empty()) {
+    if (removed.of_base || is_memory(removed.candidate.effect) ||
+        removed.candidate.columns.empty()) {
       ++i;
       continue;
     }

@@ -150,7 +150,7 @@ std::string alike(const State& s, const std::vector<Ranked>& order) {
     const double more = order[i].fit.held_out_nmse / order[0].fit.held_out_nmse - 1.0;
     if (more > kAlikeMost || std::abs(block_t(order[i].fit, order[0].fit)) > kSignificant) continue;
     if (is_memory(first) && is_needed_beside(s, order[0], order[i])) continue;
-    if (!s.chosen.empty()) return fmt::format("{} or {}", first, other);
+    if (has_step(s)) return fmt::format("{} or {}", first, other);
     // What else is missing may hide the difference.
     const Fit a = best_with(s, *order[0].candidate);
     const Fit b = best_with(s, *order[i].candidate);

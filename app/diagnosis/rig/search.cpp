@@ -14,6 +14,7 @@
 #include "app/diagnosis/rig/steps.hpp"
 #include "app/diagnosis/rig/strokes.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
+#include "app/error.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -28,10 +29,99 @@ void keep_rejected(State& s, const std::vector<Ranked>& order) {
   }
 }
 
+/// An effect that the base has, in the form that leaves least.
+void take_of_base(State& s, const std::string& effect) {
+  const Candidate* best = nullptr;
+  Fit least;
+  for (const Candidate& c : s.library.candidates) {
+    if (c.effect != effect) continue;
+    Fit fit = judge(s, joined(chosen_columns(s), c.columns)).fit;
+    if (!fit.beats(least)) continue;
+    least = std::move(fit);
+    best = &c;
+  }
+  if (best == nullptr)
+    throw RunError{fmt::format(
+        "[model] base: {} cannot be told from this motion; expected another base, or a record with "
+        "more motion",
+        effect)};
+  choose(s, Candidate{*best}, 0.0, 0.0);
+  Chosen& chosen = s.chosen.back();
+  chosen.of_base = true;
+  if (!is_memory(effect)) return;
+  refine_memory(s, chosen);
+  try_bouc_wen(s, chosen);
+  chosen.step.effect = chosen.candidate.effect = effect;
+}
+
+/// The motion of a driven mass by what was chosen and some columns more.
+Screened screened_with(const State& s, const ColumnSet& more) {
+  const auto struck = [](const Chosen& c) { return c.step.effect == "impulsive_input"; };
+  if (!s.refine || !filtered(s) || std::any_of(s.chosen.begin(), s.chosen.end(), struck)) return {};
+  const Judged judged = judge(s, joined(chosen_columns(s), more));
+  if (!judged.fit.ok) return {};
+  Model model;
+  model.columns = columns_of(s, judged.set);
+  model.fit = judged.fit;
+  model.ridge = ridge(s);
+  for (const Chosen& c : s.chosen) {
+    model.skew_s += c.skew_s;
+    if (c.path.hz > 0.0) model.path = c.path;
+    model.changes.insert(model.changes.end(), c.changes.begin(), c.changes.end());
+  }
+  return screen_by_motion(s.records, s.scale, std::move(model));
+}
+
+/// Noise of the deflection bends every equation, and hardly the motion: an effect with which the
+/// mass goes where it was seen goes first. Whether there is one that leaves nothing but noise.
+bool prefer_what_moves(const State& s, std::vector<Ranked>& order) {
+  Screened first;
+  Screened best;
+  std::size_t pick = 0;
+  for (std::size_t i = 0; i < std::min(order.size(), kScreenedEffects); ++i) {
+    const Screened there = screened_with(s, order[i].candidate->columns);
+    if (i == 0) first = there;
+    if (first.followed) break;
+    if (!there.ok || (best.ok && there.nmse >= best.nmse)) continue;
+    best = there;
+    pick = i;
+  }
+  if (first.followed) return true;
+  if (!best.ok) return false;
+  const bool instead = !first.ok || best.nmse < kMovesInstead * first.nmse;
+  if (!instead) return false;
+  std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(pick),
+              order.begin() + static_cast<std::ptrdiff_t>(pick) + 1);
+  return best.followed;
+}
+
+/// Takes the first of an order.
+void take_first(State& s, const std::vector<Ranked>& order) {
+  const Ranked& top = order.front();
+  choose(s, *top.candidate, top.gain, top.t);
+  Chosen& chosen = s.chosen.back();
+  chosen.runners_up = std::exchange(s.losers, {});
+  chosen.other_memory = other_memory_of(order);
+  s.rejected.clear();
+  if (!filtered(s)) try_mass(s);
+  if (!is_memory(chosen.step.effect)) return;
+  refine_memory(s, chosen);
+  try_bouc_wen(s, chosen);
+}
+
 /// One more step; false where nothing passes.
 bool forward(State& s) {
   std::vector<Ranked> order = rank(s);
   if (order.empty()) return false;
+  if (screened_with(s, {}).followed) {
+    keep_rejected(s, order);
+    return false;
+  }
+  if (prefer_what_moves(s, order)) {
+    keep_rejected(s, order);
+    take_first(s, order);
+    return true;
+  }
   const auto left_before = [](const auto& ranked) {
     return ranked.fit.held_out_nmse / (1.0 - ranked.gain);
   };
@@ -54,16 +144,7 @@ bool forward(State& s) {
   if (!passes(s, top, left_before(top))) return false;
   s.alike = alike(s, order);
   if (!s.alike.empty()) return false;
-  choose(s, *top.candidate, top.gain, top.t);
-  Chosen& chosen = s.chosen.back();
-  chosen.runners_up = std::exchange(s.losers, {});
-  chosen.other_memory = other_memory_of(order);
-  s.rejected.clear();
-  if (!filtered(s)) try_mass(s);
-  if (is_memory(chosen.step.effect)) {
-    refine_memory(s, chosen);
-    try_bouc_wen(s, chosen);
-  }
+  take_first(s, order);
   return true;
 }
 
@@ -74,20 +155,24 @@ const std::vector<Series>& records_at(const State& s, std::size_t count) {
   return s.records;
 }
 
-/// The base and the first `count` steps.
-TrialBase base_with(const State& s, std::size_t count) {
-  TrialBase out;
+/// Columns of the base and of the first `count` that were chosen, but for its friction.
+ColumnSet set_with(const State& s, std::size_t count) {
   ColumnSet set = s.library.base;
   if (s.spring_added && (count > 0 || s.base_takes_spring)) set = joined(set, {s.library.spring});
   if (s.mass_added && (count > 0 || s.base_takes_mass)) set = joined(set, {s.library.mass});
+  for (std::size_t i = 0; i < count; ++i) set = joined(set, s.chosen[i].candidate.columns);
+  return set;
+}
+
+/// The base and the first `count` that were chosen.
+TrialBase base_with(const State& s, std::size_t count) {
+  TrialBase out;
   bool memory = false;
   for (std::size_t i = 0; i < count; ++i) {
-    const Chosen& c = s.chosen[i];
-    set = joined(set, c.candidate.columns);
-    out.ridge = std::max(out.ridge, c.ridge);
-    memory = memory || is_memory(c.candidate.effect);
+    out.ridge = std::max(out.ridge, s.chosen[i].ridge);
+    memory = memory || is_memory(s.chosen[i].candidate.effect);
   }
-  out.columns = columns_of(s, set);
+  out.columns = columns_of(s, set_with(s, count));
   if (s.library.base_friction && (s.base_friction_left || !memory))
     out.friction = columns_of(s, s.library.friction);
   return out;
@@ -97,7 +182,7 @@ TrialBase base_with(const State& s, std::size_t count) {
 /// first step.
 bool holds_in_base(const State& s, Eigen::Index column) {
   const std::vector<Series>& records = records_at(s, 0);
-  const TrialBase base = base_with(s, 0);
+  const TrialBase base = base_with(s, count_of_base(s));
   const TrialFits fits{records, base, {s.library.at(column)}};
   const Fit with = fits.best({0});
   return with.beats(fits.best()) &&
@@ -106,20 +191,25 @@ bool holds_in_base(const State& s, Eigen::Index column) {
 
 /// The base with what was added to it that is no step.
 Model base_model(const State& s, std::vector<std::string>& notes) {
-  const TrialBase base = base_with(s, 0);
+  const std::size_t count = count_of_base(s);
+  const TrialBase base = base_with(s, count);
   std::vector<Series> records = records_at(s, 0);
+  std::vector<Chosen> chosen{s.chosen.begin(),
+                             s.chosen.begin() + static_cast<std::ptrdiff_t>(count)};
   Model out;
   out.terms = s.library.base_terms;
+  for (const Chosen& c : chosen) out.terms.push_back(c.step.effect);
   if (s.spring_added && s.base_takes_spring) out.terms.emplace_back("linear spring");
   if (s.mass_added && s.base_takes_mass) out.terms.emplace_back("moving mass");
+  ColumnSet set = set_with(s, count);
   if (const auto friction = TrialFits{records, base}.friction()) {
     out.columns.push_back(*friction);
     out.friction = 0;
+    set.insert(set.begin(), -1);  // no column of the library
   }
   out.columns.insert(out.columns.end(), base.columns.begin(), base.columns.end());
-  const Joint joint = fit_jointly(out, records, 0.0, s.scale);
-  std::vector<Chosen> none;
-  describe(s, joint, out, none, {}, notes);
+  const Joint joint = fit_jointly(out, records, base.ridge, s.scale);
+  describe(s, joint, out, chosen, set, notes);
   return out;
 }
 
@@ -178,7 +268,8 @@ Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
 /// base and on the same records.
 void chain(State& s, const Explanation& out) {
   double before = out.base.fit.held_out_nmse;
-  for (std::size_t i = 0; i < s.chosen.size(); ++i) {
+  const std::size_t first = count_of_base(s);
+  for (std::size_t i = first; i < s.chosen.size(); ++i) {
     Step& step = s.chosen[i].step;
     std::vector<Regressor> more;
     for (const Candidate& c : s.chosen[i].runners_up)
@@ -204,7 +295,7 @@ void chain(State& s, const Explanation& out) {
                               : best_fit(records_at(s, i + 1), base_with(s, i + 1)).held_out_nmse;
     before = step.held_out_after;
     step.terms = out.base.terms;
-    for (std::size_t k = 0; k <= i; ++k) step.terms.push_back(s.chosen[k].step.effect);
+    for (std::size_t k = first; k <= i; ++k) step.terms.push_back(s.chosen[k].step.effect);
   }
 }
 
@@ -244,7 +335,12 @@ void find_floor(const State& s, Explanation& out) {
 /// A mass, a spring, friction or damping below nothing.
 std::string impossible(const Model& model) {
   std::string out;
+  // Where damping grows with the deflection, it may drive about the middle (Van der Pol).
+  const bool may_drive =
+      std::any_of(model.columns.begin(), model.columns.end(),
+                  [](const Regressor& c) { return c.kind == Kind::kSquareVelocity; });
   for (const Parameter& p : model.parameters) {
+    if (may_drive && p.name == "viscous") continue;
     const bool is_level = p.name == "moving_mass" || p.name == "stiffness" ||
                           p.name.starts_with("coulomb") || p.name.starts_with("viscous");
     if (!is_level || p.value > -kImpossible * p.std) continue;
@@ -266,8 +362,10 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   if (filtered(s)) out.filter_hz = records.front().config.corner_hz;
   if (s.library.may_add_spring) take_dominant_spring(s);
   if (s.library.wants_impacts) leave_impacts_out(s);
+  for (const std::string& effect : s.library.base_searched) take_of_base(s, effect);
+  const std::size_t first = s.chosen.size();
   do refine_width(s);
-  while (s.chosen.size() < kMostSteps && forward(s));
+  while (s.chosen.size() < first + kMostSteps && forward(s));
   backward(s);
   reconsider_base(s);
   s.spring_added = false;
@@ -276,8 +374,8 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   if (!filtered(s)) try_mass(s);
   ColumnSet set;
   out.final = final_model(s, set, out.notes);
-  s.base_takes_spring = s.chosen.empty() || holds_in_base(s, s.library.spring);
-  s.base_takes_mass = s.chosen.empty() || holds_in_base(s, s.library.mass);
+  s.base_takes_spring = !has_step(s) || holds_in_base(s, s.library.spring);
+  s.base_takes_mass = !has_step(s) || holds_in_base(s, s.library.mass);
   std::vector<std::string> notes_of_base;
   out.base = base_model(s, notes_of_base);
   if (!out.base.fit.ok || !out.final.fit.ok) {
@@ -295,7 +393,7 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
                     "than what it names.",
                     out.impossible));
   find_floor(s, out);
-  for (const Chosen& c : s.chosen) out.steps.push_back(c.step);
+  for (std::size_t i = first; i < s.chosen.size(); ++i) out.steps.push_back(s.chosen[i].step);
   return out;
 }
 

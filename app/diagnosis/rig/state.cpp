@@ -51,6 +51,11 @@ Judged judge(const State& s, const ColumnSet& more) {
   return best;
 }
 
+std::size_t count_of_base(const State& s) {
+  return static_cast<std::size_t>(
+      std::count_if(s.chosen.begin(), s.chosen.end(), [](const Chosen& c) { return c.of_base; }));
+}
+
 ColumnSet chosen_columns(const State& s) {
   ColumnSet out;
   for (const Chosen& c : s.chosen) out = joined(out, c.candidate.columns);

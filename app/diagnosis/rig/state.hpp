@@ -16,6 +16,7 @@ namespace dampline::app::rig {
 struct Chosen {
   Candidate candidate;
   Step step;
+  bool of_base{false};  ///< [model] base has it: it is no step
   double ridge{0.0};
   double other_memory{0.0};  ///< error of the other memory's smallest form over this one's; 0: none
   double skew_s{0.0};        ///< of time_skew, which has no columns
@@ -66,6 +67,10 @@ struct State {
 [[nodiscard]] ColumnSet set_of(const State& s, const ColumnSet& more, std::size_t width);
 [[nodiscard]] Judged judge(const State& s, const ColumnSet& more);
 [[nodiscard]] ColumnSet chosen_columns(const State& s);
+/// How many of the chosen the base has; they are the first.
+[[nodiscard]] std::size_t count_of_base(const State& s);
+/// Whether a step was taken.
+[[nodiscard]] inline bool has_step(const State& s) { return s.chosen.size() > count_of_base(s); }
 [[nodiscard]] inline Judged judge_chosen(const State& s) { return judge(s, chosen_columns(s)); }
 /// Held out, of the base and what was chosen.
 [[nodiscard]] inline double error(const State& s) { return judge_chosen(s).fit.held_out_nmse; }
