@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """What SciPy makes of the records of `noise --records FOLDER`, with the true structure given:
-least squares on central differences, and output error (least_squares on odeint) of the smooth laws,
+least squares on central differences, and output error (least_squares on Runge and Kutta's steps) of the smooth laws,
 started there. Prints a table of the worst parameter's median error over the seeds.
 `noise.py FOLDER`; see bench/README.md."""
 import pathlib
@@ -11,7 +11,6 @@ import sys
 import time
 
 import numpy as np
-from scipy.integrate import odeint
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
@@ -46,29 +45,49 @@ def by_differences(terms, t, x, f):
     return np.linalg.lstsq(np.column_stack(columns), f[1:-1], rcond=None)[0]
 
 
-def by_output(terms, t, x, f, start):
-    force = CubicSpline(t, f)
-    piece, base, h = force.c.tolist(), t[0], t[1] - t[0]
+def paths_of(terms, unknowns, force, h):
+    """Deflections of several laws at once, a column each: Runge and Kutta's fourth order. `force` at
+    the samples and halfway between them; `unknowns`: mass, coefficients, start."""
+    mass, *coefficients, x, v = unknowns
     functions = list(terms.values())
-    last = len(t) - 2
 
-    def rate(state, at, theta):
-        i = min(max(int((at - base) / h), 0), last)
-        u = at - base - i * h
-        push = ((piece[0][i] * u + piece[1][i]) * u + piece[2][i]) * u + piece[3][i]
-        held = sum(c * g(state[0], state[1]) for c, g in zip(theta[1:], functions))
-        return state[1], (push - held) / theta[0]
+    def accel(push, x, v):
+        return (push - sum(c * g(x, v) for c, g in zip(coefficients, functions))) / mass
 
-    def left(unknowns):
-        theta = unknowns[:-2] * scale
-        path = odeint(rate, unknowns[-2:] * (rms, rms / h * 0.01), t, args=(theta.tolist(),),
-                      rtol=1e-8, atol=1e-10, mxstep=5000)
-        return np.nan_to_num((path[:, 0] - x) / rms, nan=1e3, posinf=1e3, neginf=-1e3)
+    out = np.empty((len(force) // 2 + 1, len(x)))
+    out[0] = x
+    for i in range(len(out) - 1):
+        a, b, c = force[2 * i : 2 * i + 3]
+        a1 = accel(a, x, v)
+        v2 = v + h / 2 * a1
+        a2 = accel(b, x + h / 2 * v, v2)
+        v3 = v + h / 2 * a2
+        a3 = accel(b, x + h / 2 * v2, v3)
+        v4 = v + h * a3
+        a4 = accel(c, x + h * v3, v4)
+        x = x + h / 6 * (v + 2 * v2 + 2 * v3 + v4)
+        v = v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+        out[i + 1] = x
+    return out
 
-    scale = np.maximum(np.abs(start), 1e-9)
+
+def by_output(terms, t, x, f, start):
+    h = t[1] - t[0]
+    force = CubicSpline(t, f)(t[0] + h / 2 * np.arange(2 * len(t) - 1))
     rms = np.std(x)
-    fit = least_squares(left, [*np.sign(start), x[0] / rms, 0.0], method="lm", max_nfev=400)
-    return fit.x[:-2] * scale
+    scale = np.array([*np.abs(start), rms, 10 * rms])
+
+    def left(u):
+        path = paths_of(terms, (u * scale)[:, None], force, h)[:, 0]
+        return np.nan_to_num((path - x) / rms, nan=1e3, posinf=1e3, neginf=-1e3)
+
+    def slopes(u):
+        beside = u[:, None] + np.column_stack([np.zeros(len(u)), 1e-6 * np.eye(len(u))])
+        paths = paths_of(terms, beside * scale[:, None], force, h)
+        return np.nan_to_num((paths[:, 1:] - paths[:, :1]) / (1e-6 * rms))
+
+    fit = least_squares(left, [*np.sign(start), x[0] / rms, 0.0], slopes, method="lm", max_nfev=60)
+    return (fit.x * scale)[:-2]
 
 
 def worst(truth, terms, theta):
