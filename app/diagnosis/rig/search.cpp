@@ -361,9 +361,9 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   out.whole_records = s.regression->folds() == records.size();
   if (filtered(s)) out.filter_hz = records.front().config.corner_hz;
   if (s.library.may_add_spring) take_dominant_spring(s);
-  if (s.library.wants_impacts) leave_impacts_out(s);
   for (const std::string& effect : s.library.base_searched) take_of_base(s, effect);
   const std::size_t first = s.chosen.size();
+  if (s.library.wants_impacts) leave_impacts_out(s);
   do refine_width(s);
   while (s.chosen.size() < first + kMostSteps && forward(s));
   backward(s);
