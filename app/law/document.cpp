@@ -54,6 +54,7 @@ constexpr std::array kTexts{
              "acceleration of what hangs on x, of frequency a and damping ratio b", "kg", "Hz", ""},
     TermText{Kind::kBoucWen, "bouc_wen", "presliding_hysteresis",
              "z, z' = v - (|v| z + b v |z|) / a", "N/m", "m", ""},
+    TermText{Kind::kMaxwell, "maxwell", "viscoelastic", "z, z' = v - z / a", "N/m", "s", ""},
     TermText{Kind::kStop, "stop", "presliding_hysteresis", "u", "N", "m", ""},
     TermText{Kind::kGapUp, "gap_up", "backlash", "max(u, 0)^4", "N", "m", ""},
     TermText{Kind::kGapDown, "gap_down", "backlash", "-max(-u, 0)^4", "N", "m", ""},

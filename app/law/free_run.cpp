@@ -40,12 +40,11 @@ bool is_inertia(Kind kind) { return kind == Kind::kInertia || kind == Kind::kAcc
 
 bool remembers(const Term& t) { return !t.sharp && t.column.kind >= Kind::kBoucWen; }
 
-/// Where a column's like stands: the same travel, and of a Bouc-Wen element the same shape.
+/// Where a column's like stands: the same travel, and of what has a rate the same kind and shape.
 std::size_t place_of(const std::vector<Regressor>& memories, const Regressor& c) {
-  const bool bouc_wen = c.kind == Kind::kBoucWen;
   const auto like = [&](const Regressor& other) {
-    return (other.kind == Kind::kBoucWen) == bouc_wen && other.a == c.a &&
-           (!bouc_wen || other.b == c.b);
+    if (other.a != c.a || has_rate(other.kind) != has_rate(c.kind)) return false;
+    return !has_rate(c.kind) || (other.kind == c.kind && other.b == c.b);
   };
   return static_cast<std::size_t>(std::find_if(memories.begin(), memories.end(), like) -
                                   memories.begin());
@@ -67,6 +66,7 @@ double stiffness_of(const Term& t, double reach_m) {
     case Kind::kCube:
       return 3.0 * c * reach_m * reach_m;
     case Kind::kBoucWen:
+    case Kind::kMaxwell:
       return c;
     default:
       return has_stop(t.column.kind) && !t.sharp ? 4.0 * c / t.column.a : 0.0;
@@ -81,6 +81,7 @@ double radians_of(const Law& law, double interval_s) {
     if (t.column.kind == Kind::kSign && !t.sharp)
       most += std::pow(std::abs(t.coefficient) / (t.column.a * law.mass_kg), 2);
     if (t.column.kind == Kind::kVelocity) most += std::pow(t.coefficient / law.mass_kg, 2);
+    if (t.column.kind == Kind::kMaxwell) most += std::pow(t.column.a, -2);
   }
   return std::sqrt(most) * interval_s;
 }
@@ -178,7 +179,7 @@ FreeRun::FreeRun(const Law& law, const Input& input, int refinement)
     const Term& t = law.terms[i];
     (t.sharp ? sharp_ : smooth_).push_back(i);
     memory_of_.push_back(place_of(memories_, t.column));
-    turns_ = turns_ || t.sharp || t.column.kind >= Kind::kBoucWen ||
+    turns_ = turns_ || t.sharp || t.column.kind == Kind::kBoucWen || has_stop(t.column.kind) ||
              t.column.kind == Kind::kSpeed || t.column.kind == Kind::kSpeedSquared;
   }
 }
@@ -195,7 +196,7 @@ double FreeRun::smooth_force(double x, double v, const State& state) const noexc
   for (const std::size_t i : smooth_) {
     const Term& t = law_.terms[i];
     const std::size_t m = memory_of_[i];
-    if (t.column.kind == Kind::kBoucWen)
+    if (has_rate(t.column.kind))
       out += t.coefficient * state.memory_m[m];
     else if (has_stop(t.column.kind))
       out +=
@@ -218,9 +219,10 @@ FreeRun::Rate FreeRun::rate(const State& s, double force_n, Mode mode) const noe
   out.v = accel(s, force_n, mode);
   for (std::size_t m = 0; m < memories_.size(); ++m) {
     const Regressor& c = memories_[m];
-    if (c.kind != Kind::kBoucWen) continue;
     const double z = s.memory_m[m];
-    out.z[m] = out.x - (std::abs(out.x) * z + c.b * out.x * std::abs(z)) / c.a;
+    if (c.kind == Kind::kMaxwell) out.z[m] = out.x - z / c.a;
+    if (c.kind == Kind::kBoucWen)
+      out.z[m] = out.x - (std::abs(out.x) * z + c.b * out.x * std::abs(z)) / c.a;
   }
   return out;
 }
@@ -231,7 +233,7 @@ void FreeRun::place(const State& from, double dt_s, const Rate& r, State& out) c
   out.velocity_mps = from.velocity_mps + dt_s * r.v;
   const double way_m = out.deflection_m - from.deflection_m;
   for (std::size_t m = 0; m < memories_.size(); ++m) {
-    if (memories_[m].kind == Kind::kBoucWen) {
+    if (has_rate(memories_[m].kind)) {
       out.memory_m[m] = from.memory_m[m] + dt_s * r.z[m];
       continue;
     }
@@ -258,8 +260,7 @@ State FreeRun::step(const State& from, Eigen::Index i, double share, double leng
   mean.x = (a.x + 2.0 * (b.x + c.x) + d.x) / 6.0;
   mean.v = (a.v + 2.0 * (b.v + c.v) + d.v) / 6.0;
   for (std::size_t m = 0; m < memories_.size(); ++m)
-    if (memories_[m].kind == Kind::kBoucWen)
-      mean.z[m] = (a.z[m] + 2.0 * (b.z[m] + c.z[m]) + d.z[m]) / 6.0;
+    if (has_rate(memories_[m].kind)) mean.z[m] = (a.z[m] + 2.0 * (b.z[m] + c.z[m]) + d.z[m]) / 6.0;
   place(from, dt_s, mean, there);
   return there;
 }

@@ -29,6 +29,7 @@ struct Regressor {
     kProgressiveAbsolute,  ///< tanh(v / a) |x|
     kAttached,             ///< acceleration of a mass on a spring: a Hz, damping ratio b
     kBoucWen,              ///< z of travel a and shape b, see bouc_wen
+    kMaxwell,              ///< z, z' = v - z / a: stretch of a spring behind a dashpot, a in s
     kStop,                 ///< u of travel a
     kGapUp,                ///< max(u, 0)^4 of travel a: no force about the middle
     kGapDown,              ///< -max(-u, 0)^4
@@ -50,6 +51,10 @@ struct Regressor {
 
 using Kind = Regressor::Kind;
 
+/// Whether it has a state of its own, of a rate.
+[[nodiscard]] constexpr bool has_rate(Kind kind) noexcept {
+  return kind == Kind::kBoucWen || kind == Kind::kMaxwell;
+}
 /// Whether a stop operator is in it.
 [[nodiscard]] constexpr bool has_stop(Kind kind) noexcept { return kind >= Kind::kStop; }
 /// Of x and v alone, at one instant.

@@ -223,7 +223,7 @@ bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unk
       if (k == 1) step *= 2.0 * std::numbers::pi / period_s_;
       if (k >= 2) {
         const auto m = static_cast<std::size_t>(k - 2);
-        step = kDifferences[0] * memories[m].a;
+        step = kDifferences[0] * (memories[m].kind == Kind::kMaxwell ? range_m_ : memories[m].a);
         if (s.start.memory_m[m] > 0.0) step = -step;
       }
       if (!slope(base, moved_state(s.start, k, step), step, l.by_state.col(k))) return false;

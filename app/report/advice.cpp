@@ -170,6 +170,10 @@ constexpr std::array kEffects{
         "middle of the frame, "
         "and look for loose brake gear and brackets. A frame-end sensor takes pitch into account.",
         "A part of the rig swings of its own: look for loose or soft mounts at that frequency."},
+    Advice{"other_truck", "The other truck pushes through the body",
+           "Nothing is wrong: both trucks carry one body, and this is taken into account. A sensor "
+           "on the other truck's frame makes it surer.",
+           kAnyRig},
     Advice{"time_skew", "A sensor is late",
            "Compare filter and rate of the sensor nodes: they must be the same in all three. For a "
            "file the delay was set "

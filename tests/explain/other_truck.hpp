@@ -194,4 +194,34 @@ inline Plant mode(double share, double hz) {
   return out;
 }
 
+/// A body that rests on another truck, too: the part of its mass that goes with the other frame,
+/// how far that one is behind over the same rail (negative: ahead), its friction over this one's.
+struct Coupling {
+  double mass_kg{0.0};
+  double delay_s{0.0};
+  double level_share{1.0};
+};
+inline Plant coupled(const Coupling& to, double length_s = 120.0, std::uint64_t road_seed = 7) {
+  const auto delay = static_cast<std::ptrdiff_t>(std::lround(to.delay_s / kStepS));
+  const auto most = static_cast<std::size_t>(std::abs(delay));
+  auto input = road(static_cast<std::size_t>(length_s * kRateHz) * kFine + most, road_seed);
+  return force([=, rail = std::move(input), y_m = 0.0, v_mps = 0.0](const State& s) mutable {
+    const auto at = [&](std::ptrdiff_t i) {
+      const bool is_there = i >= 0 && i < static_cast<std::ptrdiff_t>(rail.size());
+      return is_there ? rail[static_cast<std::size_t>(i)] : 0.0;
+    };
+    const auto now = static_cast<std::ptrdiff_t>(std::lround(s.time_s / kStepS)) - delay;
+    const double wheels_mps2 =
+        at(now) + at(now - static_cast<std::ptrdiff_t>(kWheelbaseM / kSpeedMps / kStepS));
+    const double pushed_n = kSpringNpm * y_m + to.mass_kg * s.frame_mps2;
+    const double without = v_mps + kStepS * (-2.0 * pushed_n / kMassKg - wheels_mps2);
+    const double held = 2.0 * to.level_share * kCoulombN / kMassKg * kStepS;
+    const double next = sign(without) * std::max(std::abs(without) - held, 0.0);
+    const double frame_mps2 = 0.5 * ((next - v_mps) / kStepS + wheels_mps2);
+    v_mps = next;
+    y_m += kStepS * next;
+    return to.mass_kg * frame_mps2;
+  });
+}
+
 }  // namespace dampline::test

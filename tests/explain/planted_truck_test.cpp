@@ -148,5 +148,21 @@ TEST(ATruck, LacksSomethingWithoutAName) {
   EXPECT_EQ(found.explanation.conclusion, effect::Conclusion::kUnexplained) << summarize(found);
 }
 
+/// By the other simulation; the other truck's friction is not this one's.
+TEST(ATruck, SeesTheOtherTruckOfTheBodyInItsOwnMotion) {
+  for (const test::Coupling& to :
+       {test::Coupling{5600.0, 0.43, 1.0}, {5600.0, -0.43, 1.15}, {4400.0, 0.31, 0.9}}) {
+    const Explained found = explained(test::coupled(to), 27);
+    const Explanation all = told(found);
+    ASSERT_TRUE(found.other) << summarize(all);
+    EXPECT_EQ(all.steps.front().effect, "other_truck") << summarize(all);
+    EXPECT_EQ(all.verdict, "explained") << summarize(all);
+    EXPECT_NEAR(found.other->delay_s.value, to.delay_s, 1e-3);
+    EXPECT_NEAR(found.other->mass_kg.value, to.mass_kg, 3.0 * found.other->mass_kg.std);
+    EXPECT_NEAR(found.explanation.final_coulomb_n.value, kCoulombN, 0.03 * kCoulombN);
+    EXPECT_NEAR(found.explanation.final_stiffness_npm.value, kSpringNpm, 0.05 * kSpringNpm);
+  }
+}
+
 }  // namespace
 }  // namespace dampline::app

@@ -110,9 +110,29 @@ double worst_balance(const Law& law) {
   return std::sqrt(squares / static_cast<double>(path.size()));
 }
 
+TEST(FreeRun, RelaxesAsASpringBehindADashpot) {
+  constexpr double kTimeS = 0.03;
+  constexpr double kBehindNpm = 500.0;
+  const Law law{kMassKg, {{{Kind::kDeflection}, 200.0}, {{Kind::kMaxwell, kTimeS}, kBehindNpm}}};
+  // x = sin(w t) asks for this force; the stretch starts where its own steady state does.
+  constexpr double kW = 9.0;
+  const double size = 1.0 / (1.0 + std::pow(kW * kTimeS, 2));
+  const auto stretch = [&](double t) {
+    return size * kW * kTimeS * (std::cos(kW * t) + kW * kTimeS * std::sin(kW * t));
+  };
+  const Input input = input_of(1500, [&](double t) {
+    return (200.0 - kMassKg * kW * kW) * std::sin(kW * t) + kBehindNpm * stretch(t);
+  });
+  State start{0.0, kW, {}, {}};
+  start.memory_m[0] = stretch(0.0);
+  const Eigen::VectorXd path = path_of(law, input, start);
+  for (int i = 0; i < 1500; i += 41) EXPECT_NEAR(path[i], std::sin(kW * i * kIntervalS), 1e-5) << i;
+}
+
 TEST(FreeRun, RemembersAsTheEquationsDo) {
   const Term spring{{Kind::kDeflection}, 200.0};
   EXPECT_LT(worst_balance({kMassKg, {spring, {{Kind::kStop, 5e-3}, 3.0}}}), 0.06);
+  EXPECT_LT(worst_balance({kMassKg, {spring, {{Kind::kMaxwell, 0.04}, 900.0}}}), 0.06);
   EXPECT_LT(worst_balance(
                 {kMassKg, {spring, {{Kind::kGapUp, 5e-3}, 3.0}, {{Kind::kGapDown, 5e-3}, 3.0}}}),
             0.06);

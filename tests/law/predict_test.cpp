@@ -163,8 +163,8 @@ TEST_F(Predict, TenLinesOfPythonMoveTheSameLaw) {
 /// The simulator's own frame, on wheelsets that the law never saw; what is left is sensors and
 /// rounding, as explain has them.
 TEST_F(Predict, MovesATrucksFrameByItsWheelsets) {
-  for (const char* effect :
-       {"", "--effect presliding_hysteresis", "--effect progressive_friction"}) {
+  for (const char* effect : {"", "--effect presliding_hysteresis", "--effect progressive_friction",
+                             "--effect viscoelastic"}) {
     const std::string simulate = fmt::format("simulate --quiet --force {} ", effect);
     ASSERT_EQ(program_.run(simulate + "--duration 120 --seed 5 --out train.log").code, 0);
     ASSERT_EQ(

@@ -10,11 +10,23 @@
 namespace dampline::app::rig {
 namespace {
 
+/// z' = v - z / a, exact where the deflection is straight between samples.
+Eigen::VectorXd maxwell(const Eigen::VectorXd& deflection_m, double time_s, double interval_s) {
+  const double kept = std::exp(-interval_s / time_s);
+  const double gained = time_s / interval_s * (1.0 - kept);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(deflection_m.size());
+  for (Eigen::Index i = 1; i < out.size(); ++i)
+    out[i] = kept * out[i - 1] + gained * (deflection_m[i] - deflection_m[i - 1]);
+  return out;
+}
+
 Eigen::VectorXd steady(const Regressor& column, const Series& series) {
   const Eigen::Index count = series.size();
   if (column.kind == Kind::kAttached)
     return attached_accel(series.deflection_m, series.velocity_mps, {column.a, column.b},
                           series.interval_s);
+  if (column.kind == Kind::kMaxwell)
+    return maxwell(series.deflection_m, column.a, series.interval_s);
   if (column.kind == Kind::kBoucWen) return bouc_wen(series.deflection_m, column.a, column.b);
   Eigen::VectorXd out{count};
   double z_m = std::clamp(series.start_m, -column.a, column.a);

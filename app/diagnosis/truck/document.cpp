@@ -108,6 +108,12 @@ bool add_effect(Writing& w, const effect::Candidate& c, const Estimate& plain) {
       w.unknown('a', Part::kA, {term}, way.std);
       return true;
     }
+    case Effect::kViscoelastic: {
+      const Estimate time = w.get("viscoelastic_time");
+      const std::size_t term = w.add({Kind::kMaxwell, time.value}, w.get("viscoelastic_stiffness"));
+      w.unknown('a', Part::kA, {term}, time.std);
+      return true;
+    }
     case Effect::kCubicStiffness:
       w.add({Kind::kCube}, w.get("cubic_stiffness"));
       return true;
@@ -142,6 +148,8 @@ law::Document document_of(const Explained& explained, const std::vector<Paramete
       w.document().not_in_it.push_back(
           fmt::format("{}: found, and no function of the law", effect::name_of(c.effect)));
   }
+  if (explained.other)
+    w.document().not_in_it.emplace_back("other_truck: it pushes through the body");
   if (explained.drifts)
     w.document().not_in_it.emplace_back("time_drift: a parameter changed over the record");
   law::Document out = w.finish();

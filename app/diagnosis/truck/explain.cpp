@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -42,20 +43,18 @@ Validated validate(const Config& config, const SourceOptions& source, std::uint3
   return {source.path, std::sqrt(found.base_nmse), std::sqrt(found.final_nmse)};
 }
 
-}  // namespace
+/// One record, and what its readings share.
+struct Reading {
+  const Config& config;
+  const ExplainOptions& options;
+  FrameNoise noise;
+  std::unique_ptr<effect::Explainer> explainer{std::make_unique<effect::Explainer>()};
+  OtherTruckSearch search;
+};
 
-Explained explain_truck(const Config& config, const ExplainOptions& options) {
-  const EstimatorConfig core = estimator_config(config);
-  FrameNoise noise{core.sample_rate_hz, core.anti_alias};
-  const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
-    noise.take(sample);
-  };
-  const TruckPass pass = pass_of(config, options.source, {{}, {}, options.show_progress, listen});
-  Explained out;
-  out.identified = pass.run->finish(rate_of(*pass.feed, *pass.run), options.source.path);
-  pass.feed->describe(pass.run->frames(), out.identified);
-  out.circumstances = pass.run->circumstances();
-  const auto explainer = std::make_unique<effect::Explainer>();
+/// Explains what a pass gathered, until nothing needless is named.
+void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
+  const auto& [config, options, noise, explainer, search] = reading;
   while (true) {
     if (!judge_sums(config, pass.diagnosis(), *explainer, out))
       throw RunError{
@@ -64,16 +63,61 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
                       fmt::join(out.identified.trust_reasons, " "))};
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
-    look_again(config, options, pass, noise, *explainer, out);
+    look_again(config, options, pass, noise, *explainer, out, reading.search);
     const effect::Effect needless = needless_effect(out.explanation);
-    if (needless == effect::Effect::kUnknown) break;
+    if (needless == effect::Effect::kUnknown) return;
     out.needless[static_cast<std::size_t>(needless)] = true;
   }
+}
+
+constexpr double kGainOfOther = 0.1;  // of the error that is left
+
+/// The truck under the other end of the body, where what is left tells of it: the record is
+/// explained anew with what its frame does, and stays so where less is left then.
+void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
+  const auto& wanted = reading.config.model.candidates;
+  const auto is_wanted = [](const std::string& name) {
+    return name == "all" || name == "other_truck";
+  };
+  if (std::none_of(wanted.begin(), wanted.end(), is_wanted)) return;
+  if (reading.config.car.far_mass_kg || out.withheld || out.drifts) return;
+  const effect::Explanation& e = out.explanation;
+  auto found = reading.search.find({estimator_config(reading.config).moving_mass_kg,
+                                    e.final_stiffness_npm.value, e.final_coulomb_n.value,
+                                    first.diagnosis().velocity_rms_mps()});
+  if (!found) return;
+  Explained with = out;
+  with.other = std::make_shared<const OtherTruck>(std::move(*found));
+  with.without_other_nmse = base_error(e);
+  with.needless = {};
+  const TruckPass pass = pass_of(reading.config, reading.options.source,
+                                 {{}, {}, reading.options.show_progress, {}, with.other.get()});
+  explain_pass(reading, pass, with);
+  if (with.explanation.final.held_out_nmse < (1.0 - kGainOfOther) * e.final.held_out_nmse)
+    out = std::move(with);
+}
+
+}  // namespace
+
+Explained explain_truck(const Config& config, const ExplainOptions& options) {
+  const EstimatorConfig core = estimator_config(config);
+  Reading reading{config, options, FrameNoise{core.sample_rate_hz, core.anti_alias},
+                  std::make_unique<effect::Explainer>(), OtherTruckSearch{core.sample_rate_hz}};
+  const auto listen = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
+    reading.noise.take(sample);
+  };
+  const TruckPass pass = pass_of(config, options.source, {{}, {}, options.show_progress, listen});
+  Explained out;
+  out.identified = pass.run->finish(rate_of(*pass.feed, *pass.run), options.source.path);
+  pass.feed->describe(pass.run->frames(), out.identified);
+  out.circumstances = pass.run->circumstances();
+  explain_pass(reading, pass, out);
+  look_for_other(reading, pass, out);
   effect::name_nothing_impossible(out.explanation);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
     out.validation.push_back(
-        validate(config, {path, options.source.skip_bad_lines}, ++number, out, *explainer));
+        validate(config, {path, options.source.skip_bad_lines}, ++number, out, *reading.explainer));
   out.inputs = pass.feed->extra_inputs();
   out.inputs.insert(out.inputs.begin(), describe_record(options.source.path));
   for (const std::string& path : options.validation)

@@ -7,6 +7,7 @@
 
 #include "app/config/config.hpp"
 #include "app/diagnosis/common/explanation.hpp"
+#include "app/diagnosis/truck/other_truck.hpp"
 #include "app/record/feed.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
@@ -20,6 +21,9 @@ namespace dampline::app {
 struct Explained : effect::Judgement {
   effect::Circumstances circumstances;  ///< of the record
   LateChannel lateness;                 ///< of a channel that was set right for the explanation
+  /// The truck under the other end of the body, where the explanation takes it in; or null.
+  std::shared_ptr<const OtherTruck> other;
+  double without_other_nmse{0.0};  ///< held-out error of the base without it
   /// By Effect: what looked like one at first and was none, and is no candidate any more.
   std::array<bool, effect::kEffects> needless{};
   std::vector<Validated> validation;

@@ -83,9 +83,26 @@ Step drift_step(const Explained& explained) {
   return out;
 }
 
+/// The other truck; what is left with it is what the base leaves of the force of both.
+Step other_step(const Explained& explained) {
+  const OtherTruck& other = *explained.other;
+  Step out;
+  out.effect = "other_truck";
+  out.terms = terms_of(explained.explanation, 0);
+  out.terms.emplace_back("other_truck");
+  out.held_out_before = explained.without_other_nmse;
+  out.held_out_after = base_error(explained.explanation);
+  out.gain = 1.0 - out.held_out_after / out.held_out_before;
+  out.parameters = {parameter("other_truck_mass", other.mass_kg, "kg"),
+                    parameter("other_truck_delay", other.delay_s, "s")};
+  return out;
+}
+
 ModelFound base_of(const Explained& explained) {
   const effect::Explanation& e = explained.explanation;
-  ModelFound out{terms_of(e, 0), explained.drifts ? e.base.held_out_nmse : base_error(e), {}, {}};
+  double error = explained.drifts ? e.base.held_out_nmse : base_error(e);
+  if (explained.other) error = explained.without_other_nmse;
+  ModelFound out{terms_of(e, 0), error, {}, {}};
   out.parameters = explained.identified.parameters;
   if (out.parameters.empty())
     out.parameters = {parameter("coulomb", e.base_coulomb_n, "N"),
@@ -123,7 +140,11 @@ Explanation found_in(const Explained& explained) {
   out.known = {e.floor_nmse > 0.0, is_unknown(conclusion), explained.withheld, !is_possible(e)};
   out.unknown = !explained.withheld && !explained.drifts && is_unknown(e.conclusion);
   out.base = base_of(explained);
-  for (std::size_t i = 0; i < e.step_count; ++i) out.steps.push_back(step_of(e, i));
+  if (explained.other) out.steps.push_back(other_step(explained));
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    out.steps.push_back(step_of(e, i));
+    if (explained.other) out.steps.back().terms.emplace_back("other_truck");
+  }
   if (explained.drifts) out.steps.push_back(drift_step(explained));
   out.final = final_of(explained, out);
   out.rejected = rejected_of(e);
@@ -146,7 +167,7 @@ Explanation found_in(const Explained& explained) {
 Explanation conclude(const Explained& explained, RunResult& result) {
   Explanation out = found_in(explained);
   const effect::Explanation& e = explained.explanation;
-  if (e.step_count > 0) {
+  if (e.step_count > 0 || explained.other) {
     put_law(e, result.curve);
     std::erase_if(result.notes,
                   [](const std::string& note) { return note.starts_with("A viscous part"); });

@@ -27,15 +27,21 @@ EvidenceScale scale_of(const EstimatorConfig& core, const TruckPass& first) {
 
 /// The record again, with the surrogates.
 void read_again(const Config& config, const ExplainOptions& options, const EstimatorConfig& core,
-                const TruckPass& first, Surrogates* surrogates, Explained& out) {
+                const TruckPass& first, Surrogates* surrogates, OtherTruckSearch& search,
+                Explained& out) {
   EvidenceMeter meter{scale_of(core, first)};
-  TruckPoints points{core.sample_rate_hz,
-                     core.moving_mass_kg,
-                     out.explanation,
-                     {[&](const EvidencePoint& p) { meter.add(p); }, [&] { meter.gap(); }}};
-  TruckPassOptions again{out.explanation.grids, out.lateness, options.show_progress, {}};
+  const auto look = [&](const EvidencePoint& p) {
+    meter.add(p);
+    search.add(p);
+  };
+  search.clear();
+  TruckPoints points{
+      core.sample_rate_hz, core.moving_mass_kg, out.explanation, {look, [&] { meter.gap(); }}};
+  TruckPassOptions again{
+      out.explanation.grids, out.lateness, options.show_progress, {}, out.other.get()};
   again.watch = [&](const Sample& sample, const UpdateResult& result,
                     const effect::Diagnosis& diagnosis) {
+    search.take(sample);
     points.take(sample, result, diagnosis);
     if (surrogates != nullptr) surrogates->take(sample);
   };
@@ -59,7 +65,8 @@ bool can_read_again(const std::string& path) {
 }
 
 void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
-                const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
+                const FrameNoise& noise, effect::Explainer& explainer, Explained& out,
+                OtherTruckSearch& search) {
   if (!can_read_again(options.source.path)) return;
   EstimatorConfig core = estimator_config(config);
   core.screen = first.run->config().estimator.screen;
@@ -67,14 +74,14 @@ void look_again(const Config& config, const ExplainOptions& options, const Truck
       noise_of_record(guarded_noise(first.run->core()), noise, core.screen.step_mps2);
   const auto surrogates = std::make_unique<Surrogates>();
   surrogates->begin(core, surrogate_config(core, out.explanation, seen), out.explanation);
-  read_again(config, options, core, first, surrogates.get(), out);
+  read_again(config, options, core, first, surrogates.get(), search, out);
   surrogates->finish();
   const std::size_t steps = out.explanation.step_count;
   surrogates->hold_against(explainer, 0.0, out);
   // A surrogate that shows the same effect has taken it back: what is left is the base's.
   if (out.explanation.step_count == steps) return;
   out.lateness = {};
-  read_again(config, options, core, first, nullptr, out);
+  read_again(config, options, core, first, nullptr, search, out);
 }
 
 namespace {
@@ -109,7 +116,7 @@ class CloserLook {
   /// Explains with these grids and a channel set right; `left`: how late it still is.
   effect::Explanation explain(const Explained& known, const effect::Grids& grids,
                               const LateChannel& lateness, Estimate& left) {
-    TruckPassOptions reading{grids, lateness, options_.show_progress, {}};
+    TruckPassOptions reading{grids, lateness, options_.show_progress, {}, known.other.get()};
     const effect::SurrogateConfig law =
         with_memory(surrogate_config(core_, known.explanation, noise_), known.explanation);
     const bool late = late_step(known.explanation) != nullptr;

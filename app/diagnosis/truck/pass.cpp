@@ -45,12 +45,18 @@ TruckPass pass_of(const Config& config, const SourceOptions& source,
   pass.run = std::make_unique<ExplainRun>(config, pass.feed->signals(), options.grids);
   const IdentifierConfig& core = pass.run->config();
   FractionalDelay alignment{options.lateness, core.estimator.sample_rate_hz};
-  if (options.lateness.late_s != 0.0) {
-    pass.aligned = std::make_unique<DiagnosisRun>(core, options.grids);
+  if (options.lateness.late_s != 0.0 || options.other != nullptr) {
+    IdentifierConfig aligned = core;
+    if (options.other != nullptr) aligned.estimator.far_mass_kg = options.other->mass_kg.value;
+    pass.aligned = std::make_unique<DiagnosisRun>(aligned, options.grids);
     AlignedWatch watch{options, pass};
-    pass.run->watch([&alignment, &pass, watch](const Sample& sample, const UpdateResult&) mutable {
-      if (const auto aligned = alignment.next(sample)) pass.aligned->push(*aligned, watch);
-    });
+    pass.run->watch(
+        [&alignment, &options, &pass, watch](const Sample& sample, const UpdateResult&) mutable {
+          const auto set_right = alignment.next(sample);
+          if (!set_right) return;
+          pass.aligned->push(
+              options.other != nullptr ? options.other->beside(*set_right) : *set_right, watch);
+        });
   } else if (options.watch) {
     pass.run->watch([&options, &pass](const Sample& sample, const UpdateResult& result) {
       options.watch(sample, result, pass.diagnosis());

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/config/config.hpp"
+#include "app/diagnosis/truck/other_truck.hpp"
 #include "app/identify/truck_run.hpp"
 #include "app/record/feed.hpp"
 #include "dampline/effect/conclusion.hpp"
@@ -20,7 +21,7 @@ using DiagnosisRun = BasicIdentifier<kDiagnosisParts>;
 struct TruckPass {
   std::unique_ptr<SampleFeed> feed;
   std::unique_ptr<ExplainRun> run;
-  std::unique_ptr<DiagnosisRun> aligned;  ///< where a channel was set right; else null
+  std::unique_ptr<DiagnosisRun> aligned;  ///< where samples were set right; else null
   [[nodiscard]] const effect::Diagnosis& diagnosis() const noexcept {
     return aligned ? aligned->effects() : run->core().effects();
   }
@@ -32,6 +33,7 @@ struct TruckPassOptions {
   bool show_progress{false};
   /// Sees every sample that the diagnosis took.
   std::function<void(const Sample&, const UpdateResult&, const effect::Diagnosis&)> watch{};
+  const OtherTruck* other{nullptr};  ///< whose frame moves as it says; null: none is known
 };
 
 /// Throws RunError when the record holds no sample, UsageError when it is no truck's.

@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kRing = 2048;  // more than the integral's delay
 constexpr double kMeanS = 1.0;
 
-/// Hann's weights over a second, their sum one.
+}  // namespace
+
 std::vector<double> mean_weights(double rate_hz) {
   const auto half = static_cast<int>(std::lround(0.5 * kMeanS * rate_hz));
   std::vector<double> out;
@@ -24,8 +25,6 @@ std::vector<double> mean_weights(double rate_hz) {
   for (double& w : out) w /= sum;
   return out;
 }
-
-}  // namespace
 
 TruckPoints::TruckPoints(double sample_rate_hz, double moving_mass_kg,
                          const effect::Explanation& explanation, Outlets outlets)
@@ -71,7 +70,9 @@ void TruckPoints::start_row(std::int64_t tick, const Motion& motion,
   w.row[effect::kFrameOnce] =
       0.5 * (motion.velocity_mps + now.wheelset_mps[0] + now.wheelset_mps[1]);
   // The columns are averages over the neighbours; so is what they are compared with.
-  w.row[effect::kTarget] = -(before + 10.0 * now.accel_mps2[0] + after) / 12.0;
+  w.row[effect::kTarget] = -(diagnosis.raw().at(tick - 1).pushed_mps2 + 10.0 * now.pushed_mps2 +
+                             diagnosis.raw().at(tick + 1).pushed_mps2) /
+                           12.0;
   w.point.time_s = static_cast<double>(tick - *first_tick_) / rate_hz_;
   w.point.deflection_m = motion.deflection_m;
   w.point.velocity_mps = motion.velocity_mps;

@@ -13,7 +13,11 @@
 
 namespace dampline::app {
 
-/// A truck's force sample by sample: -M z_b'' as measured, and as two models make it of the motion.
+/// Hann's weights over a second, their sum one.
+[[nodiscard]] std::vector<double> mean_weights(double rate_hz);
+
+/// A truck's force sample by sample: -M z_b'' as measured (with the far truck's share, where that
+/// is known), and as two models make it of the motion.
 /// The motion is without what is slower than about 1 Hz; the same is taken off each force, as the
 /// mean over a second with Hann's weights.
 class TruckPoints {

@@ -82,7 +82,12 @@ double left_over_floor(const Explained& explained) noexcept {
 }
 
 effect::Conclusion conclusion_of(const Explained& explained) noexcept {
-  if (!explained.drifts) return explained.explanation.conclusion;
+  const effect::Conclusion conclusion = explained.explanation.conclusion;
+  if (explained.other && conclusion == effect::Conclusion::kComplete)
+    return effect::Conclusion::kExplained;
+  if (explained.other && conclusion == effect::Conclusion::kUnexplained)
+    return effect::Conclusion::kPartlyExplained;
+  if (!explained.drifts) return conclusion;
   const double ratio = left_over_floor(explained);
   return ratio > 0.0 && ratio < effect::kIncompleteAbove ? effect::Conclusion::kExplained
                                                          : effect::Conclusion::kPartlyExplained;
