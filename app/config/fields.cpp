@@ -8,7 +8,7 @@ namespace dampline::app {
 namespace {
 
 /// Names of the physical effects that a model may contain or lack.
-constexpr std::array<std::string_view, 23> kEffects{"viscous",
+constexpr std::array<std::string_view, 24> kEffects{"viscous",
                                                     "asymmetric_viscous",
                                                     "quadratic_damping",
                                                     "progressive_damping",
