@@ -98,7 +98,7 @@ def fill_postgresql(dampline, fleet, address):
     make_tables(dampline, address)
     copy = subprocess.Popen(
         ["psql", "-q", "-v", "ON_ERROR_STOP=1", address, "-c",
-         f"copy state ({','.join(COLUMNS)}) from stdin with (format csv)"],
+         f"copy state ({','.join(COLUMNS)}) from stdin with (format csv, force_not_null (load, alarms))"],
         stdin=subprocess.PIPE, text=True)
     writer = csv.writer(copy.stdin, lineterminator="\n")
     body = "\\x" + fleet.body.hex()

@@ -88,8 +88,8 @@ TEST_F(Analysis, ReadStateRefusesWhatIsDamaged) {
   expect_refused("", "is no dampline state");
   expect_refused("RIFFxxxx", "is no dampline state");
   changed = state;
-  changed[8] = 3;
-  expect_refused(changed, "is of version 3");
+  changed[8] = 4;
+  expect_refused(changed, "is of version 4");
 }
 
 TEST_F(Analysis, LoadGivesParametersAndTables) {
