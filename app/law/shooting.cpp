@@ -19,7 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double kFirstPeriods = 4.0;  // of the motion, in a segment
 constexpr Index kFewestSamples = 50;
-constexpr double kLonger = 3.0;    // times, from one length of segments to the next
+constexpr double kLonger = 8.0;  // times, from one length of segments to the next
+constexpr double kLeastLonger = 1.5;
 constexpr double kMuchMore = 4.0;  // times the squares left: longer segments are not followed
 constexpr int kRounds = 15;
 constexpr int kStateRounds = 6;
@@ -82,7 +83,8 @@ class Shooting {
 
   void cut(Index samples);
   [[nodiscard]] bool run(const FreeRun& law, const Segment& s, State& state, VectorXd& out) const;
-  [[nodiscard]] double squares_of(const VectorXd& unknowns, std::vector<Segment>& segments) const;
+  [[nodiscard]] double squares_of(const VectorXd& unknowns, std::vector<Segment>& segments,
+                                  const std::vector<Segment>& others = {}) const;
   [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
                                std::vector<Linear>& out);
   [[nodiscard]] Sums sum(const std::vector<Linear>& parts) const;
@@ -150,21 +152,39 @@ VectorXd left_of(const Drive& d, Index begin, const VectorXd& deflection_m) {
   return out;
 }
 
-/// What is left in all; hands on what the terms remember.
-double Shooting::squares_of(const VectorXd& unknowns, std::vector<Segment>& segments) const {
+/// What is left in all; hands on what the terms remember. Where there are other starts, each
+/// segment takes the one that leaves less: what holds the mass hides its start, and a step there
+/// goes astray.
+double Shooting::squares_of(const VectorXd& unknowns, std::vector<Segment>& segments,
+                            const std::vector<Segment>& others) const {
   const Law law = law_of_(unknowns);
   double out = 0.0;
   State end;
   VectorXd path;
-  for (Segment& s : segments) {
-    const Drive& d = drives_[s.drive];
+  const auto left = [&](Segment& s, const State& before, State& after) {
     if (!s.is_first) {
-      s.start.memory_m = end.memory_m;
-      s.start.slip_m = end.slip_m;
+      s.start.memory_m = before.memory_m;
+      s.start.slip_m = before.slip_m;
     }
-    end = s.start;
-    if (!run(FreeRun{law, d.input}, s, end, path)) return std::numeric_limits<double>::infinity();
-    out += left_of(d, s.begin, path).squaredNorm();
+    after = s.start;
+    const Drive& d = drives_[s.drive];
+    return run(FreeRun{law, d.input}, s, after, path) ? left_of(d, s.begin, path).squaredNorm()
+                                                      : std::numeric_limits<double>::infinity();
+  };
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const State before = end;
+    double least = left(segments[i], before, end);
+    if (!others.empty()) {
+      Segment other = others[i];
+      State after;
+      if (const double there = left(other, before, after); there < least) {
+        least = there;
+        segments[i] = other;
+        end = after;
+      }
+    }
+    out += least;
+    if (!std::isfinite(out)) return out;
   }
   return out;
 }
@@ -273,7 +293,7 @@ bool Shooting::settle(const VectorXd& unknowns) {
   for (int i = 0; i < kStateRounds; ++i) {
     if (!linearise(unknowns, 1, false, parts)) return false;
     std::vector<Segment> there = moved(parts, {});
-    const double then = squares_of(unknowns, there);
+    const double then = squares_of(unknowns, there, segments_);
     if (!(then < squares)) break;
     const bool enough = then > (1.0 - 1e-4) * squares;
     segments_ = std::move(there);
@@ -304,7 +324,7 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
         if (positive_[static_cast<std::size_t>(j)])
           by[j] = std::clamp(by[j], -kMostMove * unknowns[j], kMostMove * unknowns[j]);
       std::vector<Segment> there = moved(parts, by);
-      const double then = squares_of(unknowns + by, there);
+      const double then = squares_of(unknowns + by, there, segments_);
       if (!(then < squares)) continue;
       const double variance = sums.squares / static_cast<double>(samples_);
       const MatrixXd inverse = factor.solve(MatrixXd::Identity(by.size(), by.size()));
@@ -426,12 +446,14 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
   cut(length);
   if (!settle(unknowns)) return {};
   double squares = 0.0;
-  if (!descend(unknowns, length < longest ? kNearly : kArrived, squares)) return {};
-  while (length < longest) {
+  const bool is_last = length >= longest && reach == Reach::kWhole;
+  if (!descend(unknowns, is_last ? kArrived : kNearly, squares)) return {};
+  double longer = kLonger;
+  while (length < longest && longer > kLeastLonger) {
     const VectorXd before = unknowns;
     const std::vector<Segment> segments = segments_;
     const Index shorter = length;
-    length = std::min(longest, static_cast<Index>(kLonger * static_cast<double>(length)));
+    length = std::min(longest, static_cast<Index>(longer * static_cast<double>(length)));
     cut(length);
     double then = 0.0;
     if (settle(unknowns) && descend(unknowns, length < longest ? kNearly : kArrived, then) &&
@@ -441,8 +463,8 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
     }
     unknowns = before;
     segments_ = segments;
-    length_ = shorter;
-    break;
+    length = length_ = shorter;
+    longer = std::sqrt(longer);
   }
   return judge(unknowns, squares);
 }

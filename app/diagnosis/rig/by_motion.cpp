@@ -199,22 +199,21 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
     out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
 }
 
-/// Its other forms, and what screening makes of them: where the best of them goes clearly better
-/// over a part of the records, where it has come.
-std::optional<Moved> better_form(const Moved& first, std::vector<Series>& records,
-                                 const Scale& scale, double noise_m) {
+/// The form, and the figures, with which the best of all forms goes over a part of the records;
+/// the first where no other goes clearly better.
+Moved best_form(const Moved& first, std::vector<Series>& records, const Scale& scale,
+                double noise_m) {
   const std::vector<Form> forms = other_forms(first.model, scale);
-  if (forms.empty()) return std::nullopt;
+  if (forms.empty()) return first;
   const std::vector<law::Drive> part = drives_of(records, kScreened);
-  Moved best = move(first.model, first.joint, first.shot.unknowns, scale, part, kQuick);
-  if (!best.shot.ok) return std::nullopt;
-  bool other = false;
+  std::vector<Moved> starts{
+      move(first.model, first.joint, unknowns_of(first.model, first.joint), scale, part, kQuick)};
+  Moved best = starts.front();
+  if (!best.shot.ok) return first;
   const auto take = [&](Moved there, double enough) {
     if (!there.shot.ok || !(there.shot.held_out_nmse < enough * best.shot.held_out_nmse)) return;
     best = std::move(there);
-    other = true;
   };
-  std::vector<Moved> starts;
   for (const Form& form : forms) {
     Model there = form.model;
     const Joint by_rows = fit_jointly(there, records, first.model.ridge, scale);
@@ -223,7 +222,6 @@ std::optional<Moved> better_form(const Moved& first, std::vector<Series>& record
     take(starts.back(), form.plainer ? kPlainer : kOtherForm);
   }
   // Sticking makes many minima: from where the best form has come, and with other speeds.
-  starts.push_back(first);
   const Moved from = best;
   for (const Moved& form : starts)
     for (const double times : kSpeeds) {
@@ -233,7 +231,6 @@ std::optional<Moved> better_form(const Moved& first, std::vector<Series>& record
         continue;
       take(move(form.model, form.joint, with_speeds(from, times), scale, part, kQuick), kOtherForm);
     }
-  if (!other) return std::nullopt;
   return best;
 }
 
@@ -267,14 +264,13 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& m
   if (!joint.ok || !can_move(records, model, scale)) return;
   const std::vector<law::Drive> drives = drives_of(records);
   const double noise_m = noise_of(records);
-  Moved best = move(model, joint, unknowns_of(model, joint), scale, drives);
+  const Moved first{model, joint, {}};
+  Moved best = best_form(first, records, scale, noise_m);
+  const Eigen::VectorXd start =
+      best.shot.ok ? best.shot.unknowns : unknowns_of(best.model, best.joint);
+  best = move(best.model, best.joint, start, scale, drives);
+  if (!best.shot.ok) best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;
-  if (const std::optional<Moved> other = better_form(best, records, scale, noise_m)) {
-    Moved there = move(other->model, other->joint, other->shot.unknowns, scale, drives);
-    const double enough = there.joint.size() < best.joint.size() ? kPlainer : kOtherForm;
-    if (there.shot.ok && there.shot.held_out_nmse < enough * best.shot.held_out_nmse)
-      best = std::move(there);
-  }
   judge(best, drives, scale, noise_m);
   if (best.model.free_run.by_motion) {
     const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);

@@ -77,7 +77,9 @@ std::vector<Ranked> rank(const State& s) {
     const Fit& reference = (c.effect == "offset_force" ? beside_spring : beside_constant).fit;
     const Judged with = judge(s, beside_both(s, c.columns));
     if (!with.fit.ok || !reference.ok || has_other_sign(c, with)) continue;
-    if (!is_memory(c.effect) && has_driving_friction(s, with.fit)) continue;
+    // Damping that grows with the deflection may drive about the middle.
+    const bool may_drive = is_memory(c.effect) || c.effect == "progressive_damping";
+    if (!may_drive && has_driving_friction(s, with.fit)) continue;
     const double gain = gain_of(reference, with.fit);
     Ranked& b = best[c.effect];
     if (b.candidate != nullptr && gain <= b.gain) continue;

@@ -72,27 +72,18 @@ Screened screened_with(const State& s, const ColumnSet& more) {
   return screen_by_motion(s.records, s.scale, std::move(model));
 }
 
-/// Noise of the deflection bends every equation, and hardly the motion: an effect with which the
-/// mass goes where it was seen goes first. Whether there is one that leaves nothing but noise.
+/// Noise of the deflection bends every equation, and hardly the motion: where what leads leaves
+/// more of the motion than noise, an effect that leaves no more goes first. Whether one leads.
 bool prefer_what_moves(const State& s, std::vector<Ranked>& order) {
-  Screened first;
-  Screened best;
-  std::size_t pick = 0;
-  for (std::size_t i = 0; i < std::min(order.size(), kScreenedEffects); ++i) {
-    const Screened there = screened_with(s, order[i].candidate->columns);
-    if (i == 0) first = there;
-    if (first.followed) break;
-    if (!there.ok || (best.ok && there.nmse >= best.nmse)) continue;
-    best = there;
-    pick = i;
+  const std::size_t count = std::min(order.size(), kScreenedEffects);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!screened_with(s, order[i].candidate->columns).followed) continue;
+    const auto first = order.begin();
+    const auto pick = first + static_cast<std::ptrdiff_t>(i);
+    std::rotate(first, pick, pick + 1);
+    return true;
   }
-  if (first.followed) return true;
-  if (!best.ok) return false;
-  const bool instead = !first.ok || best.nmse < kMovesInstead * first.nmse;
-  if (!instead) return false;
-  std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(pick),
-              order.begin() + static_cast<std::ptrdiff_t>(pick) + 1);
-  return best.followed;
+  return false;
 }
 
 /// Takes the first of an order.

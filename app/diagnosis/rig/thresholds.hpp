@@ -83,12 +83,11 @@ inline constexpr double kLongestMove = 0.2;  // of a place at once
 inline constexpr double kHalvesApart = 3.0;  // deviations: halves differ, and the deviation widens
 
 // The law by its own motion.
-inline constexpr double kFollowed = 1.1;  // times the deflection's noise: nothing more is left
-inline constexpr double kExact = 1e-8;    // nmse of the motion: the same
+inline constexpr double kFollowed = 1.05;  // times the deflection's noise: nothing more is left
+inline constexpr double kExact = 1e-8;     // nmse of the motion: the same
 inline constexpr std::array kSpeeds{1.0, 0.5, 2.0};  // of a friction that falls: starts
 inline constexpr double kScreened = 60.0;  // periods of the motion, by which forms are compared
 inline constexpr std::size_t kScreenedEffects = 5;  // of a step, the first
-inline constexpr double kMovesInstead = 0.5;        // of the squares that what leads leaves
 inline constexpr double kMisses = 1e-3;             // nmse of the motion: the law is not complete
 inline constexpr double kOtherForm = 0.999;     // of the squares left: another form of an effect
 inline constexpr double kPlainer = 1.001;       // the same, for one with a figure less
