@@ -253,10 +253,14 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
   if (!can_move(records, model, scale)) return out;
   const Joint joint = fit_jointly(model, records, model.ridge, scale);
   if (!joint.ok) return out;
-  const Moved moved =
+  const double noise_m = noise_of(records);
+  Moved moved =
       move(model, joint, unknowns_of(model, joint), scale, drives_of(records, kScreened), kQuick);
+  const bool fades = std::any_of(model.columns.begin(), model.columns.end(),
+                                 [](const Regressor& c) { return is_fading(c.kind); });
+  if (fades && !follows(moved.shot, noise_m)) moved = best_form(moved, records, scale, noise_m);
   if (!moved.shot.ok) return out;
-  return {true, follows(moved.shot, noise_of(records)), moved.shot.held_out_nmse};
+  return {true, follows(moved.shot, noise_m), moved.shot.held_out_nmse};
 }
 
 void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& model,
