@@ -445,6 +445,7 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
   if (reach == Reach::kFirstSegments) longest = length;
   cut(length);
   if (!settle(unknowns)) return {};
+  const Index first = length;
   double squares = 0.0;
   const bool is_last = length >= longest && reach == Reach::kWhole;
   if (!descend(unknowns, is_last ? kArrived : kNearly, squares)) return {};
@@ -466,7 +467,9 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
     length = length_ = shorter;
     longer = std::sqrt(longer);
   }
-  return judge(unknowns, squares);
+  Shot out = judge(unknowns, squares);
+  out.first_segment_s = static_cast<double>(first) * interval_s();
+  return out;
 }
 
 Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {

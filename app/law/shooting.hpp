@@ -30,6 +30,7 @@ struct Shot {
   double held_out_nmse{0.0};  ///< each of five parts by the unknowns without it
   double residual_m{0.0};     ///< rms
   double segment_s{0.0};
+  double first_segment_s{0.0};  ///< the shortest that were followed
   std::size_t segments{0};
 };
 

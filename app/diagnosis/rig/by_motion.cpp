@@ -180,20 +180,27 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
            double noise_m) {
   const Eigen::VectorXd rows = unknowns_of(moved.model, moved.joint);
   const law::Shot& motion = moved.shot;
-  const law::Shot before =
-      law::follow(law_at(moved.model, moved.joint, scale), rows, drives, motion.segment_s);
+  const auto left_by = [&](const Eigen::VectorXd& unknowns, double segment_s) {
+    const law::Shot shot =
+        law::follow(law_at(moved.model, moved.joint, scale), unknowns, drives, segment_s);
+    return shot.ok ? shot.nmse : std::numeric_limits<double>::infinity();
+  };
   FreeRunError& out = moved.model.free_run;
   out.segments = motion.segments;
   out.segment_s = motion.segment_s;
-  out.nmse_of_equations = before.ok ? before.nmse : std::numeric_limits<double>::infinity();
+  out.nmse_of_equations = left_by(rows, motion.segment_s);
   out.nmse_of_motion = motion.held_out_nmse;
   out.residual_m = motion.residual_m;
   out.noise_m = noise_m;
   out.followed = follows(motion, noise_m);
   out.agree = agree(rows, moved.joint.covariance, motion);
-  // A law that misses more than noise is held to its force, unless its motion is another one.
-  const double enough = out.followed ? kMovesBetter : kMovesFarBetter;
-  if (out.nmse_of_motion < enough * out.nmse_of_equations)
+  // A law that misses more than noise is held to its force, unless its motion is another one; over
+  // short segments, since in long ones chaos parts the like too.
+  double share = out.nmse_of_motion / out.nmse_of_equations;
+  if (!out.followed)
+    share =
+        left_by(motion.unknowns, motion.first_segment_s) / left_by(rows, motion.first_segment_s);
+  if (share < (out.followed ? kMovesBetter : kMovesFarBetter))
     out.by_motion = true;
   else if (out.agree)
     out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
@@ -256,9 +263,11 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
   const double noise_m = noise_of(records);
   Moved moved =
       move(model, joint, unknowns_of(model, joint), scale, drives_of(records, kScreened), kQuick);
-  const bool fades = std::any_of(model.columns.begin(), model.columns.end(),
-                                 [](const Regressor& c) { return is_fading(c.kind); });
-  if (fades && !follows(moved.shot, noise_m)) moved = best_form(moved, records, scale, noise_m);
+  const bool is_rough =
+      std::any_of(model.columns.begin(), model.columns.end(), [&](const Regressor& c) {
+        return is_fading(c.kind) || (c.kind == Kind::kStop && is_memory_travel(c.a, scale));
+      });
+  if (is_rough && !follows(moved.shot, noise_m)) moved = best_form(moved, records, scale, noise_m);
   if (!moved.shot.ok) return out;
   return {true, follows(moved.shot, noise_m), moved.shot.held_out_nmse};
 }
