@@ -9,6 +9,8 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/explain/explained_rig.hpp"
 
@@ -25,11 +27,13 @@ constexpr double kStiffnessNpm = 2.1e5;
 using Law = std::function<double(double, double)>;
 
 /// Bouc and Wen's hysteresis as its authors write it: z' = alpha v - beta (gamma |v| z + delta v
-/// |z|).
+/// |z|); and what a dashpot takes of it.
 struct Hysteresis {
   double alpha{0.0}, beta{0.0}, gamma{0.0}, delta{0.0};
+  double relaxation_ps{0.0};
   [[nodiscard]] double rate(double v, double z) const {
-    return alpha * v - beta * (gamma * std::abs(v) * z + delta * v * std::abs(z));
+    return alpha * v - beta * (gamma * std::abs(v) * z + delta * v * std::abs(z)) -
+           relaxation_ps * z;
   }
 };
 
@@ -90,8 +94,10 @@ std::string record(const Law& law, const Hysteresis& hysteresis = {}, double noi
 }
 
 rig::Explanation explained(const Law& law, const std::string& inertia = "identify",
-                           const Hysteresis& hysteresis = {}) {
+                           const Hysteresis& hysteresis = {},
+                           const std::vector<std::string>& candidates = {"all"}) {
   Config config;
+  config.model.candidates = candidates;
   config.model.base = {"viscous"};
   config.model.inertia = inertia;
   config.model.stiffness = "identify";
@@ -206,6 +212,21 @@ TEST(ADrivenMass, HasASpringWithBoucsAndWensHysteresis) {
 }
 
 TEST(ADrivenMass, HasAFrictionThatBuildsUpAsDahls) { expect_hysteresis({7.0e4, 2600.0, 1.0, 0.0}); }
+
+TEST(ADrivenMass, HasASpringBehindADashpotWhereThatIsLookedFor) {
+  for (const auto& [stiffness_npm, time_s] : {std::pair{8.0e4, 3.0e-3}, {4.0e4, 9.0e-3}}) {
+    const rig::Explanation found =
+        explained([](double, double) { return 0.0; }, "identify",
+                  {.alpha = stiffness_npm, .relaxation_ps = 1.0 / time_s}, {"all", "viscoelastic"});
+    ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+    EXPECT_EQ(found.steps[0].effect, "viscoelastic") << summarize(found);
+    const Parameter stiffness = dampline::test::parameter(found, "viscoelastic_stiffness");
+    const Parameter time = dampline::test::parameter(found, "viscoelastic_time");
+    EXPECT_NEAR(stiffness.value, stiffness_npm, 2.0 * stiffness.std) << summarize(found);
+    EXPECT_NEAR(time.value, time_s, 2.0 * time.std) << summarize(found);
+    EXPECT_NEAR(value_of(found, "moving_mass"), kMassKg, 0.01 * kMassKg) << summarize(found);
+  }
+}
 
 }  // namespace
 }  // namespace dampline::app

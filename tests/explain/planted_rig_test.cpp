@@ -89,6 +89,14 @@ Law backlash(double gap_m) {
   };
 }
 
+/// A spring behind a dashpot.
+Law viscoelastic(double stiffness_npm, double time_s) {
+  return [=, stretch_m = 0.0](const Motion& m, double step_m) mutable {
+    stretch_m += step_m - stretch_m / time_s / (kRateHz * kFine);
+    return simple()(m, step_m) + stiffness_npm * stretch_m;
+  };
+}
+
 struct Planted {
   const char* effect;
   Law law;
@@ -182,6 +190,20 @@ TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
   ASSERT_FALSE(damping.steps.empty());
   EXPECT_EQ(damping.steps[0].effect, "viscous") << summarize(damping);
   EXPECT_NEAR(damping.steps[0].parameters[0].value, 900.0, 45.0);
+}
+
+TEST(ARig, RelaxesWithTheSizesOfItsSpringAndDashpotWhereThatIsLookedFor) {
+  Config config = dampline::test::two_terms();
+  config.model.candidates = {"all", "viscoelastic"};
+  const rig::Explanation found =
+      dampline::test::explained(record_of(viscoelastic(4.0e4, 0.13), 61), config);
+  ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+  ASSERT_EQ(found.steps[0].effect, "viscoelastic") << summarize(found);
+  const Parameter stiffness = dampline::test::parameter(found, "viscoelastic_stiffness");
+  const Parameter time = dampline::test::parameter(found, "viscoelastic_time");
+  EXPECT_NEAR(stiffness.value, 4.0e4, 2.0 * stiffness.std) << summarize(found);
+  EXPECT_NEAR(time.value, 0.13, 2.0 * time.std) << summarize(found);
+  EXPECT_STREQ(found.verdict(), "explained");
 }
 
 TEST(ARig, LacksNothingWhereNothingIsMissing) {

@@ -35,6 +35,7 @@ constexpr std::array kFirst{
     First{"quadratic_stiffness", "quadratic_stiffness", "N/m^2"},
     First{"asymmetric_stiffness", "asymmetric_stiffness_difference", "N/m", 2.0},
     First{"bump_stop", "bump_stop_stiffness", "N/m"},
+    First{"viscoelastic", "viscoelastic_stiffness", "N/m"},
     First{"presliding_hysteresis", "presliding_hysteresis_force", "N"},
     First{"backlash", "backlash_force", "N"},
     First{"unmodelled_mode", "unmodelled_mode_mass", "kg"},
@@ -172,6 +173,9 @@ void write_small(Writing& w, std::size_t at, Step& step) {
   if (is_memory(step.effect))
     step.parameters.push_back(
         w.place(step.effect + "_travel", w.joint.of_column(at, Of::kA), column.a, "m", 2.0));
+  if (column.kind == Kind::kMaxwell)
+    step.parameters.push_back(
+        w.place("viscoelastic_time", w.joint.of_column(at, Of::kA), column.a, "s"));
   if (column.kind != Kind::kAttached) return;
   step.parameters.push_back(
       w.place("unmodelled_mode_frequency", w.joint.of_column(at, Of::kA), column.a, "Hz"));

@@ -59,6 +59,7 @@ void add_places(const Regressor& c, std::size_t column, const Scale& scale, cons
     case Kind::kGapUp:
     case Kind::kGapDown:
     case Kind::kEdge:
+    case Kind::kMaxwell:
       return add(Of::kA, kOfLength * c.a);
     case Kind::kBoucWen:
       add(Of::kA, kOfLength * c.a);
@@ -249,7 +250,8 @@ Eigen::Index Joint::of_records(Of of) const {
 bool is_friction_like(const Regressor& column) noexcept {
   const bool fading = column.kind == Kind::kFading || column.kind == Kind::kFadingSquare ||
                       column.kind == Kind::kFadingSlowly;
-  return column.kind == Kind::kSign || fading || column.kind >= Kind::kBoucWen;
+  return column.kind == Kind::kSign || fading || column.kind == Kind::kBoucWen ||
+         law::has_stop(column.kind);
 }
 
 int side_of(const Regressor& column) noexcept {

@@ -21,6 +21,12 @@ constexpr double kSharp = 3.0;  // times the width that an error of the velocity
 /// Widths of a smooth law of friction, of the speed's rms.
 constexpr double kNarrowest = 0.01;
 constexpr double kWidest = 0.3;  // a wider one is hardly another than viscous damping
+/// Times of a spring behind a dashpot, of half the range over the speed's rms: from a damper to a
+/// spring.
+constexpr double kShortestTime = 0.1;
+constexpr double kLongestTime = 3.0;
+constexpr double kTimeRatio = 1.5;
+constexpr double kFewestSteps = 2.0;  // samples in a time
 constexpr double kSteady = 1.3;  // between the speeds that a fifth of the time is below and above
 
 bool is_steady(const std::vector<Series>& records) {
@@ -37,7 +43,7 @@ bool is_steady(const std::vector<Series>& records) {
 
 bool needs_speeds(const std::string& effect) {
   return effect == "viscous" || effect == "progressive_damping" || effect == "asymmetric_viscous" ||
-         effect == "quadratic_damping" || effect == "stribeck";
+         effect == "quadratic_damping" || effect == "stribeck" || effect == "viscoelastic";
 }
 
 void add_memory(Library& out, const Scale& scale) {
@@ -82,6 +88,16 @@ void add_damping(Library& out, const core::Terms& base) {
       {"quadratic_damping", 0.0, {out.add({Kind::kSpeedSquared, 0.0, 0.0})}, 1});
   out.candidates.push_back(
       {"progressive_damping", 0.0, {out.add({Kind::kSquareVelocity, 0.0, 0.0})}, 0});
+}
+
+void add_viscoelastic(Library& out, const Scale& scale) {
+  const double slow_s = scale.deflection_m / scale.velocity_mps;
+  const double interval_s = scale.step_m / scale.velocity_mps;
+  for (const double share : ratios(kShortestTime, kLongestTime, kTimeRatio)) {
+    const double time_s = share * slow_s;
+    if (time_s > kFewestSteps * interval_s)
+      out.candidates.push_back({"viscoelastic", time_s, {out.add({Kind::kMaxwell, time_s})}, 1});
+  }
 }
 
 void add_stiffness(Library& out, const Scale& scale) {
@@ -176,10 +192,12 @@ Library make_library(const Config& config, const Scale& scale) {
   add_memory(out, scale);
   out.base_searched = searched_base(config.model);
   const auto& wanted = config.model.candidates;
-  const auto is_wanted = [&](const std::string& name) {
-    return std::find(wanted.begin(), wanted.end(), "all") != wanted.end() ||
-           std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  const auto is_named = [&](const std::string& name) {
+    return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
+  const auto is_wanted = [&](const std::string& name) { return is_named("all") || is_named(name); };
+  // Beside all others it would stand in for a mass or for damping in slow motion.
+  if (is_named("viscoelastic")) add_viscoelastic(out, scale);
   out.wants_skew = is_wanted("time_skew");
   out.wants_drift = is_wanted("time_drift");
   out.wants_mode = is_wanted("unmodelled_mode");

@@ -11,7 +11,7 @@ namespace dampline::app::rig {
 /// One way an effect may look in a rig's force.
 struct Candidate {
   std::string effect;
-  double place{0.0};  ///< its length, m, or speed, m/s
+  double place{0.0};  ///< its length, m, speed, m/s, or time, s
   ColumnSet columns;  ///< without those that every model has
   int sign{0};        ///< that the first coefficient must have; 0: any
 };
