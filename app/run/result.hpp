@@ -117,7 +117,8 @@ struct FaultFinding {
 
 /// A parameter that changed while the record was made.
 struct DriftFinding {
-  std::string parameter;    ///< "coulomb", "stiffness", "moving_mass"
+  static constexpr const char* kNotTold = "not_told";
+  std::string parameter;    ///< "coulomb", "stiffness", "moving_mass"; or kNotTold
   bool step{false};         ///< at once; else slowly over the whole record
   double time_s{0.0};       ///< of the step, in moving time
   double interval_s{0.0};   ///< of uncertainty of that time

@@ -202,8 +202,10 @@ std::string describe_alarm_figures() {
 }
 
 std::string describe_drift(const DriftFinding& drift) {
-  const std::string change = fmt::format("{} changed by {:+.1f} ± {:.1f} %", drift.parameter,
-                                         drift.change_percent.value, drift.change_percent.std);
+  std::string change = fmt::format("{} changed by {:+.1f} ± {:.1f} %", drift.parameter,
+                                   drift.change_percent.value, drift.change_percent.std);
+  if (drift.parameter == DriftFinding::kNotTold)
+    change = "what changed is not told, since a gap or friction with a memory is there,";
   if (!drift.step) return change + ", slowly over the record";
   return fmt::format("{} at {:.0f} ± {:.0f} s of moving time", change, drift.time_s,
                      0.5 * drift.interval_s);

@@ -164,5 +164,30 @@ TEST(ATruck, SeesTheOtherTruckOfTheBodyInItsOwnMotion) {
   }
 }
 
+Plant changing_at(double time_s, Plant before, Plant after) {
+  Plant out = level([=](const State& s) { return (s.time_s < time_s ? before : after).level(s); });
+  out.force = [=](const State& s) mutable { return (s.time_s < time_s ? before : after).force(s); };
+  return out;
+}
+
+TEST(ATruck, WhoseGapBeginsIsNotSimplyCalledLate) {
+  const Explained found = explained(changing_at(60.0, {}, backlash(4e-4)), 31);
+  const Explanation all = told(found);
+  EXPECT_TRUE(all.alike.find("backlash") != std::string::npos || all.steps.empty() ||
+              all.steps.front().effect == "backlash")
+      << summarize(all);
+  EXPECT_NE(all.trust, Trust::kTrusted) << summarize(all);
+}
+
+TEST(ATruck, WhoseGapGrowsHasNoOtherMass) {
+  const Explained found = explained(changing_at(60.0, backlash(3e-4), backlash(7e-4)), 32);
+  RunResult result = found.identified;
+  const Explanation all = conclude(found, result);
+  ASSERT_FALSE(all.steps.empty()) << summarize(all);
+  EXPECT_EQ(all.steps.front().effect, "backlash") << summarize(all);
+  ASSERT_TRUE(result.faults.drift) << summarize(all);
+  EXPECT_EQ(result.faults.drift->parameter, DriftFinding::kNotTold) << summarize(all);
+}
+
 }  // namespace
 }  // namespace dampline::app

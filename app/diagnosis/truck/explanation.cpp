@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/diagnosis/truck/explanation.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
 #include "app/diagnosis/truck/law.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 #include "app/text/summary.hpp"
@@ -132,6 +137,33 @@ bool is_unknown(effect::Conclusion conclusion) {
          conclusion == effect::Conclusion::kPartlyExplained;
 }
 
+/// Beside a gap, or friction with a memory, what changed is not told: a gap that grows looks like a
+/// mass.
+std::optional<DriftFinding> drift_of(const Explained& explained) {
+  std::optional<DriftFinding> out = explained.identified.faults.drift;
+  const effect::Explanation& e = explained.explanation;
+  const auto* const end = e.step.begin() + e.step_count;
+  const bool remembers = std::any_of(e.step.begin(), end, [](const effect::Step& step) {
+    return effect::has_memory(step.chosen.effect);
+  });
+  if (out && !explained.drifts && remembers) out->parameter = DriftFinding::kNotTold;
+  return out;
+}
+std::string drift_text(const DriftFinding& drift) {
+  return "A parameter is not constant: " + describe_drift(drift) + ".";
+}
+
+/// A frame that follows its wheelsets otherwise from some moment on may be late, or have a gap or
+/// softer friction since then.
+std::string alike_of(const Explained& explained) {
+  for (const FaultFinding& f : explained.identified.faults.list)
+    if (f.name == "timing_step" && f.channel == "frame")
+      return fmt::format(
+          "timing_step, or backlash or presliding_hysteresis that begins or ends at {:.0f} s",
+          f.time_s);
+  return {};
+}
+
 Explanation found_in(const Explained& explained) {
   const effect::Explanation& e = explained.explanation;
   Explanation out;
@@ -154,9 +186,9 @@ Explanation found_in(const Explained& explained) {
   out.force = "moving mass times the frame's deceleration, over 1 Hz";
   out.validation = explained.validation;
   out.faults = explained.identified.faults.list;
-  if (explained.identified.faults.drift && !explained.drifts)
-    out.notes = {
-        "A parameter is not constant: " + describe_drift(*explained.identified.faults.drift) + "."};
+  if (const auto drift = drift_of(explained); drift && !explained.drifts)
+    out.notes = {drift_text(*drift)};
+  out.alike = alike_of(explained);
   out.signature = explained.signature;
   out.channels = {"frame", "wheelset1", "wheelset2"};
   return out;
@@ -173,6 +205,10 @@ Explanation conclude(const Explained& explained, RunResult& result) {
                   [](const std::string& note) { return note.starts_with("A viscous part"); });
     if (!explained.convergence.rows.empty()) result.convergence = explained.convergence;
   }
+  result.faults.drift = drift_of(explained);
+  for (std::string& warning : result.warnings)
+    if (result.faults.drift && warning.starts_with("A parameter is not constant"))
+      warning = drift_text(*result.faults.drift) + " The values stated are means over the record.";
   put_final(out, result);
   result.evidence.explanation = to_json(out);
   return out;
