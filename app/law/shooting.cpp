@@ -13,9 +13,7 @@
 namespace dampline::app::law {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kFirstPeriods = 4.0;  // of the motion, in a segment
 constexpr Index kFewestSamples = 50;
