@@ -47,8 +47,7 @@ where state.seq < excluded.seq or (state.seq = excluded.seq and
 constexpr const char* kRowsOfTruck =
     "select load, moving_mass_kg, start_ns, end_ns, hours, coulomb_n, coulomb_std_n, "
     "stiffness_npm, stiffness_std_npm, trust, usable, alarms from state where vehicle = $1 and "
-    "truck = $2 "
-    "order by start_ns, record";
+    "truck = $2 order by start_ns, record";
 
 constexpr const char* kPutTrend = R"sql(
 insert into trend (vehicle, truck, load, moving_mass_kg, segments, usable_segments, faulty_segments,

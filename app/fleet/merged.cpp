@@ -160,9 +160,7 @@ RunResult describe(const Merged& merged, std::span<const Leaf> leaves) {
     if (const ParameterDrift drift = find_parameter_drift(*merged.sums, Estimator::kBlockS);
         drift.found) {
       result.faults.drift = finding_of(drift);
-      result.warnings.push_back(
-          "A parameter is not constant: " + describe_drift(*result.faults.drift) +
-          ". The values stated are means over the segments.");
+      result.warnings.push_back(drift_warning(*result.faults.drift, "segments"));
     }
   judge_trust(nullptr, result);
   return result;

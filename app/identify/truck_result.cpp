@@ -223,8 +223,7 @@ void describe_faults_of_all(const Guard& guard, const FaultView& view, const Par
     out.list[i].spans = spoilt_spans(guard, view.faults[i], nominal_hz, record);
   if (drift.found) {
     out.drift = finding_of(drift);
-    result.warnings.push_back("A parameter is not constant: " + describe_drift(*out.drift) +
-                              ". The values stated are means over the record.");
+    result.warnings.push_back(drift_warning(*out.drift, "record"));
   }
   if (!out.list.empty()) result.warnings.push_back(warning_of(out));
 }

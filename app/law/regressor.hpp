@@ -55,6 +55,10 @@ using Kind = Regressor::Kind;
 [[nodiscard]] constexpr bool has_rate(Kind kind) noexcept {
   return kind == Kind::kBoucWen || kind == Kind::kMaxwell;
 }
+/// Friction that falls with speed, in any of its forms.
+[[nodiscard]] constexpr bool is_fading(Kind kind) noexcept {
+  return kind == Kind::kFading || kind == Kind::kFadingSquare || kind == Kind::kFadingSlowly;
+}
 /// Whether a stop operator is in it.
 [[nodiscard]] constexpr bool has_stop(Kind kind) noexcept { return kind >= Kind::kStop; }
 /// Of x and v alone, at one instant.

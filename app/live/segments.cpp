@@ -88,7 +88,6 @@ void SegmentRun::take(const Sample& sample) noexcept {
   if (newest_ns_ < due_ns_) return;
   due_ns_ = newest_ns_ + every_ns_;
   export_to(newest_->back());
-  newest_->back().is_last = false;
   newest_->publish();
 }
 

@@ -211,4 +211,12 @@ std::string describe_drift(const DriftFinding& drift) {
                      0.5 * drift.interval_s);
 }
 
+std::string drift_text(const DriftFinding& drift) {
+  return fmt::format("{}: {}.", kNotConstant, describe_drift(drift));
+}
+
+std::string drift_warning(const DriftFinding& drift, std::string_view over) {
+  return fmt::format("{} The values stated are means over the {}.", drift_text(drift), over);
+}
+
 }  // namespace dampline::app

@@ -22,6 +22,11 @@ namespace dampline::app {
 
 /// "+12.1 ± 0.9 % at 150 s" and the like.
 [[nodiscard]] std::string describe_drift(const DriftFinding& drift);
+/// The same as a sentence, which begins with kNotConstant.
+inline constexpr std::string_view kNotConstant = "A parameter is not constant";
+[[nodiscard]] std::string drift_text(const DriftFinding& drift);
+/// That, and over what ("record", "segments") the values stated are means.
+[[nodiscard]] std::string drift_warning(const DriftFinding& drift, std::string_view over);
 /// "coulomb changed by -12.1 % since 4210 s, told at 4450 s".
 [[nodiscard]] std::string describe_alarm(const AlarmFinding& alarm);
 /// How late the live alarm is and how often it is wrong, in a sentence.

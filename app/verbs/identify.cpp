@@ -75,6 +75,11 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
           make_files(config, std::move(result), found.inputs, found.sums.get())};
 }
 
+/// What a rig's explanation concludes into.
+RunResult base_of_rig(const SourceOptions& source, const Config& config) {
+  return rig::identify(rig::csv_record(source.path, config.input, source.skip_bad_lines), config);
+}
+
 Findings explain_rig_records(const Config& config, const ExplainFlags& options,
                              const std::vector<std::string>& notes) {
   rig::Explanation found =
@@ -85,8 +90,7 @@ Findings explain_rig_records(const Config& config, const ExplainFlags& options,
   for (const std::string& path : options.records) inputs.push_back(describe_record(path));
   for (const std::string& path : options.validation)
     inputs.push_back(describe_input(path, "validation"));
-  RunResult result = rig::identify(
-      rig::csv_record(options.records.front(), config.input, options.skip_bad_lines), config);
+  RunResult result = base_of_rig({options.records.front(), options.skip_bad_lines}, config);
   const Explanation explanation = rig::conclude(found, result);
   return {summarize(explanation), make_files(config, std::move(result), inputs)};
 }
@@ -193,8 +197,7 @@ Identified identify_by_search(Config config, const IdentifyFlags& options) {
       rig::explain(config, {{source.path}, {}, "", source.skip_bad_lines});
   Identified out;
   out.inputs = {describe_record(source.path)};
-  out.result =
-      rig::identify(rig::csv_record(source.path, config.input, source.skip_bad_lines), config);
+  out.result = base_of_rig(source, config);
   rig::conclude(found, out.result);
   return out;
 }

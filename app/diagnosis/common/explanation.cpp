@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/config/config.hpp"
 #include "app/run/json.hpp"
 #include "app/text/format.hpp"
 
@@ -264,6 +266,11 @@ void chain_errors(Explanation& e) {
 }
 
 }  // namespace
+
+bool is_wanted(const ModelConfig& model, std::string_view effect) {
+  return std::any_of(model.candidates.begin(), model.candidates.end(),
+                     [&](const std::string& name) { return name == "all" || name == effect; });
+}
 
 void put_final(Explanation& e, RunResult& result) {
   chain_errors(e);

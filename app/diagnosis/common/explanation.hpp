@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -91,6 +92,10 @@ struct Explanation {
   Trust trust{Trust::kNotIdentified};
   std::vector<std::string> trust_reasons;
 };
+
+struct ModelConfig;
+/// Whether [model] candidates names it, or all.
+[[nodiscard]] bool is_wanted(const ModelConfig& model, std::string_view effect);
 
 /// Puts the final law in the place of what identify says of the record; where effects were added,
 /// the law before goes to its `base`. Errors become one chain: base, steps, final. Judges both.

@@ -118,10 +118,6 @@ Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
   return out;
 }
 
-bool is_fading(Kind kind) {
-  return kind == Kind::kFading || kind == Kind::kFadingSquare || kind == Kind::kFadingSlowly;
-}
-
 /// No more is left than the deflection's noise.
 bool follows(const law::Shot& shot, double noise_m) {
   return shot.residual_m < kFollowed * noise_m || shot.nmse < kExact;
@@ -132,7 +128,7 @@ Eigen::VectorXd with_speeds(const Moved& moved, double times) {
   Eigen::VectorXd out = moved.shot.unknowns;
   for (std::size_t k = 0; k < moved.joint.places.size(); ++k) {
     const Place& place = moved.joint.places[k];
-    if (place.of == Place::Of::kB && is_fading(moved.model.columns[place.columns[0]].kind))
+    if (place.of == Place::Of::kB && law::is_fading(moved.model.columns[place.columns[0]].kind))
       out[static_cast<Eigen::Index>(moved.joint.coefficients + k)] *= times;
   }
   return out;
@@ -164,7 +160,7 @@ std::vector<Form> other_forms(const Model& model, const Scale& scale) {
     for (std::size_t i = 0; i < model.columns.size(); ++i) {
       const Regressor& c = start.model.columns[i];
       for (const Kind shape : {Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly}) {
-        if (!is_fading(c.kind) || c.kind == shape) continue;
+        if (!law::is_fading(c.kind) || c.kind == shape) continue;
         out.push_back(start);
         out.back().model.columns[i].kind = shape;
       }
@@ -265,7 +261,7 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
       move(model, joint, unknowns_of(model, joint), scale, drives_of(records, kScreened), kQuick);
   const bool is_rough =
       std::any_of(model.columns.begin(), model.columns.end(), [&](const Regressor& c) {
-        return is_fading(c.kind) || (c.kind == Kind::kStop && is_memory_travel(c.a, scale));
+        return law::is_fading(c.kind) || (c.kind == Kind::kStop && is_memory_travel(c.a, scale));
       });
   if (is_rough && !follows(moved.shot, noise_m)) moved = best_form(moved, records, scale, noise_m);
   if (!moved.shot.ok) return out;

@@ -248,10 +248,8 @@ Eigen::Index Joint::of_records(Of of) const {
 }
 
 bool is_friction_like(const Regressor& column) noexcept {
-  const bool fading = column.kind == Kind::kFading || column.kind == Kind::kFadingSquare ||
-                      column.kind == Kind::kFadingSlowly;
-  return column.kind == Kind::kSign || fading || column.kind == Kind::kBoucWen ||
-         law::has_stop(column.kind);
+  return column.kind == Kind::kSign || law::is_fading(column.kind) ||
+         column.kind == Kind::kBoucWen || law::has_stop(column.kind);
 }
 
 int side_of(const Regressor& column) noexcept {

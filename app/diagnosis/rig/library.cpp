@@ -195,7 +195,9 @@ Library make_library(const Config& config, const Scale& scale) {
   const auto is_named = [&](const std::string& name) {
     return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
   };
-  const auto is_wanted = [&](const std::string& name) { return is_named("all") || is_named(name); };
+  const auto is_wanted = [&](const std::string& name) {
+    return app::is_wanted(config.model, name);
+  };
   // Beside all others it would stand in for a mass or for damping in slow motion.
   if (is_named("viscoelastic")) add_viscoelastic(out, scale);
   out.wants_skew = is_wanted("time_skew");

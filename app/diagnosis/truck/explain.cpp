@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -75,11 +74,7 @@ constexpr double kGainOfOther = 0.1;  // of the error that is left
 /// The truck under the other end of the body, where what is left tells of it: the record is
 /// explained anew with what its frame does, and stays so where less is left then.
 void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
-  const auto& wanted = reading.config.model.candidates;
-  const auto is_wanted = [](const std::string& name) {
-    return name == "all" || name == "other_truck";
-  };
-  if (std::none_of(wanted.begin(), wanted.end(), is_wanted)) return;
+  if (!is_wanted(reading.config.model, "other_truck")) return;
   if (reading.config.car.far_mass_kg || out.withheld || out.drifts) return;
   const effect::Explanation& e = out.explanation;
   auto found = reading.search.find({estimator_config(reading.config).moving_mass_kg,

@@ -149,9 +149,6 @@ std::optional<DriftFinding> drift_of(const Explained& explained) {
   if (out && !explained.drifts && remembers) out->parameter = DriftFinding::kNotTold;
   return out;
 }
-std::string drift_text(const DriftFinding& drift) {
-  return "A parameter is not constant: " + describe_drift(drift) + ".";
-}
 
 /// A frame that follows its wheelsets otherwise from some moment on may be late, or have a gap or
 /// softer friction since then.
@@ -207,8 +204,8 @@ Explanation conclude(const Explained& explained, RunResult& result) {
   }
   result.faults.drift = drift_of(explained);
   for (std::string& warning : result.warnings)
-    if (result.faults.drift && warning.starts_with("A parameter is not constant"))
-      warning = drift_text(*result.faults.drift) + " The values stated are means over the record.";
+    if (result.faults.drift && warning.starts_with(kNotConstant))
+      warning = drift_warning(*result.faults.drift, "record");
   put_final(out, result);
   result.evidence.explanation = to_json(out);
   return out;

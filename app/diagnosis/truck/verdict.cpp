@@ -30,10 +30,9 @@ effect::ExplainerConfig explainer_config(const Config& config) {
   effect::ExplainerConfig out;
   out.moving_mass_kg = config.car.moving_mass_kg;
   out.base_viscous = has(config.model.base, "viscous");
-  const auto& wanted = config.model.candidates;
   for (std::size_t i = 0; i < effect::kEffects; ++i) {
     const char* name = effect::name_of(static_cast<effect::Effect>(i));
-    out.allowed[i] = (has(wanted, "all") || has(wanted, name)) && !has(config.model.base, name);
+    out.allowed[i] = is_wanted(config.model, name) && !has(config.model.base, name);
   }
   // What is left of a turn that is known looks like a late frame or a mode.
   if (config.car.frame_pitch_mass_kg) {

@@ -102,9 +102,8 @@ void read_contacts(Connection& connection, Fleet& out) {
   for (const TruckContact& truck : all)
     if (truck.last_ns != 0 && out.last_ns - truck.last_ns > kSilentNs) add(out.silent, truck);
   std::reverse(all.begin(), all.end());
-  for (const TruckContact& truck : all)
-    if (truck.newest_trust == "data_faulty") add(out.faulty, truck);
   for (const TruckContact& truck : all) {
+    if (truck.newest_trust == "data_faulty") add(out.faulty, truck);
     if (truck.newest_alarms.empty()) continue;
     add(out.alarmed, truck);
     for (const std::string& name : parts_of_list(truck.newest_alarms)) ++out.alarms[name];
