@@ -156,6 +156,17 @@ struct Record {
   std::vector<double> x, force_n;
 };
 
+/// Until when it is so, of [0, most_s]; at first it is, at the end not.
+double last_of(const auto& is_so, double most_s) {
+  double low = 0.0;
+  double high = most_s;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (is_so(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 /// Runge and Kutta's fourth order; a step in which the velocity passes zero ends there, and the
 /// mass stays while the friction holds it.
 Record simulate(const System& system, const Drive& drive) {
@@ -202,25 +213,28 @@ Record simulate(const System& system, const Drive& drive) {
       s = moved(s, t, h);
       continue;
     }
+    double held_s = 0.0;  // of this step
     if (s.v == 0.0) {
-      const double pull = force_at(t) - system.law(s);
-      if (std::abs(pull) <= system.friction(0.0)) continue;
-      side = pull > 0.0 ? 1 : -1;
+      const auto pull = [&](double after) { return force_at(t + after) - system.law(s); };
+      const auto holds = [&](double after) {
+        return std::abs(pull(after)) <= system.friction(0.0);
+      };
+      if (holds(0.0) && holds(h)) continue;
+      if (holds(0.0)) held_s = last_of(holds, h);
+      side = pull(held_s) > 0.0 ? 1 : -1;
     }
-    const State next = moved(s, t, h);
+    const double from_s = t + held_s;
+    const double left_s = h - held_s;
+    const State next = moved(s, from_s, left_s);
     if (next.v * side < 0.0) {
-      double low = 0.0;
-      double high = h;
-      for (int k = 0; k < 50; ++k) {
-        const double middle = 0.5 * (low + high);
-        (moved(s, t, middle).v * side < 0.0 ? high : low) = middle;
-      }
-      s = moved(s, t, low);
+      const double low =
+          last_of([&](double after) { return moved(s, from_s, after).v * side >= 0.0; }, left_s);
+      s = moved(s, from_s, low);
       s.v = 0.0;
-      const double pull = drive(t + low) - system.law(s);
+      const double pull = drive(from_s + low) - system.law(s);
       if (std::abs(pull) > system.friction(0.0)) {
         side = pull > 0.0 ? 1 : -1;
-        s = moved(s, t + low, h - low);
+        s = moved(s, from_s + low, left_s - low);
       }
     } else {
       s = next;

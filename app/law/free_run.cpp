@@ -11,8 +11,8 @@ namespace {
 constexpr double kLongestStep = 0.08;  // radians of the fastest oscillation
 constexpr double kSeen = 1.5;          // radians of it in a sample: a fourth of a turn
 constexpr int kMostSteps = 32;
-constexpr Eigen::Index kTaps = 24;  // samples on either side, from which a force between is made
-constexpr double kWindow = 13.0;    // Kaiser's beta
+constexpr Eigen::Index kTaps = 48;  // samples on either side, from which a force between is made
+constexpr double kWindow = 20.0;    // Kaiser's beta
 constexpr int kMostEvents = 40;     // between two samples
 constexpr int kSecants = 30;
 constexpr double kWithin = 1e-13;  // of the greatest speed or force about an event

@@ -15,8 +15,6 @@
 namespace dampline::app::rig {
 namespace {
 
-constexpr law::Reach kQuick = law::Reach::kFirstSegments;
-
 /// The records, or of each what holds so many periods of the motion.
 std::vector<law::Drive> drives_of(const std::vector<Series>& records, double periods = 0.0) {
   std::vector<law::Drive> out;
@@ -202,27 +200,30 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
     out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
 }
 
+/// Over short segments of a part of the records, by which forms are compared.
+Moved move_quickly(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
+                   const Scale& scale, const std::vector<law::Drive>& part) {
+  return move(model, joint, start, scale, part, law::Reach::kFirstSegments);
+}
+
 /// The form, and the figures, with which the best of all forms goes over a part of the records;
-/// the first where no other goes clearly better.
+/// `first`, over it too, where no other goes clearly better.
 Moved best_form(const Moved& first, std::vector<Series>& records, const Scale& scale,
-                double noise_m) {
-  const std::vector<Form> forms = other_forms(first.model, scale);
-  if (forms.empty()) return first;
-  const std::vector<law::Drive> part = drives_of(records, kScreened);
-  std::vector<Moved> starts{
-      move(first.model, first.joint, unknowns_of(first.model, first.joint), scale, part, kQuick)};
-  Moved best = starts.front();
-  if (!best.shot.ok) return first;
+                const std::vector<law::Drive>& part, double noise_m) {
+  if (!first.shot.ok || first.shot.nmse < kExact) return first;
+  std::vector<Moved> starts{first};
+  Moved best = first;
   const auto take = [&](Moved there, double enough) {
     if (!there.shot.ok || !(there.shot.held_out_nmse < enough * best.shot.held_out_nmse)) return;
     best = std::move(there);
   };
-  for (const Form& form : forms) {
+  for (const Form& form : other_forms(first.model, scale)) {
     Model there = form.model;
     const Joint by_rows = fit_jointly(there, records, first.model.ridge, scale);
     if (!by_rows.ok) continue;
-    starts.push_back(move(there, by_rows, unknowns_of(there, by_rows), scale, part, kQuick));
+    starts.push_back(move_quickly(there, by_rows, unknowns_of(there, by_rows), scale, part));
     take(starts.back(), form.plainer ? kPlainer : kOtherForm);
+    if (best.shot.nmse < kExact) return best;
   }
   // Sticking makes many minima: from where the best form has come, and with other speeds.
   const Moved from = best;
@@ -232,7 +233,7 @@ Moved best_form(const Moved& first, std::vector<Series>& records, const Scale& s
       if (follows(best.shot, noise_m) || form.joint.size() != from.joint.size() ||
           same != (times != 1.0))
         continue;
-      take(move(form.model, form.joint, with_speeds(from, times), scale, part, kQuick), kOtherForm);
+      take(move_quickly(form.model, form.joint, with_speeds(from, times), scale, part), kOtherForm);
     }
   return best;
 }
@@ -257,13 +258,14 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
   const Joint joint = fit_jointly(model, records, model.ridge, scale);
   if (!joint.ok) return out;
   const double noise_m = noise_of(records);
-  Moved moved =
-      move(model, joint, unknowns_of(model, joint), scale, drives_of(records, kScreened), kQuick);
+  const std::vector<law::Drive> part = drives_of(records, kScreened);
+  Moved moved = move_quickly(model, joint, unknowns_of(model, joint), scale, part);
   const bool is_rough =
       std::any_of(model.columns.begin(), model.columns.end(), [&](const Regressor& c) {
         return law::is_fading(c.kind) || (c.kind == Kind::kStop && is_memory_travel(c.a, scale));
       });
-  if (is_rough && !follows(moved.shot, noise_m)) moved = best_form(moved, records, scale, noise_m);
+  if (is_rough && !follows(moved.shot, noise_m))
+    moved = best_form(moved, records, scale, part, noise_m);
   if (!moved.shot.ok) return out;
   return {true, follows(moved.shot, noise_m), moved.shot.held_out_nmse};
 }
@@ -273,8 +275,12 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& m
   if (!joint.ok || !can_move(records, model, scale)) return;
   const std::vector<law::Drive> drives = drives_of(records);
   const double noise_m = noise_of(records);
-  const Moved first{model, joint, {}};
-  Moved best = best_form(first, records, scale, noise_m);
+  Moved best{model, joint, {}};
+  if (!other_forms(model, scale).empty()) {
+    const std::vector<law::Drive> part = drives_of(records, kScreened);
+    best = move_quickly(model, joint, unknowns_of(model, joint), scale, part);
+    best = best_form(best, records, scale, part, noise_m);
+  }
   const Eigen::VectorXd start =
       best.shot.ok ? best.shot.unknowns : unknowns_of(best.model, best.joint);
   best = move(best.model, best.joint, start, scale, drives);
