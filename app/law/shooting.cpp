@@ -10,6 +10,9 @@
 #include <numbers>
 #include <utility>
 
+#include "app/law/block_fit.hpp"
+#include "app/law/left_over.hpp"
+
 namespace dampline::app::law {
 namespace {
 
@@ -29,7 +32,6 @@ constexpr double kFar = 30.0;      // times the motion's range: it ran away
 // Of an unknown's scale: where sticking makes the error ragged, wider differences see its course.
 constexpr std::array kDifferences{1e-6, 1e-4, 3e-3};
 constexpr double kMostMove = 0.5;  // of an unknown that stays above 0
-constexpr std::size_t kFolds = 5;
 constexpr Index kFewestBlocks = 20;
 
 struct Segment {
@@ -45,12 +47,6 @@ struct Linear {
   VectorXd left;
   MatrixXd by_unknowns;
   MatrixXd by_state;
-};
-
-struct Sums {
-  MatrixXd products;
-  VectorXd gradient;
-  double squares{0.0};
 };
 
 class Shooting {
@@ -91,6 +87,7 @@ class Shooting {
   bool settle(const VectorXd& unknowns);
   bool descend(VectorXd& unknowns, double enough, double& squares);
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
+  [[nodiscard]] double excess_of(const std::vector<Linear>& parts) const;
   Shot judge(const VectorXd& unknowns, double squares);
 
   const LawOf& law_of_;
@@ -361,22 +358,20 @@ std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts) const {
   return out;
 }
 
-/// What every kFolds-th block keeps by the unknowns that the others choose.
-double held_out_squares(const Sums& all, const std::vector<Sums>& blocks) {
-  double held_out = 0.0;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) {
-    MatrixXd products = all.products;
-    VectorXd gradient = all.gradient;
-    for (std::size_t b = fold; b < blocks.size(); b += kFolds) {
-      products -= blocks[b].products;
-      gradient -= blocks[b].gradient;
+double Shooting::excess_of(const std::vector<Linear>& parts) const {
+  LeftOver spectra;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const Drive& d = drives_[segments_[k].drive];
+    if (segments_[k].is_first) spectra.gap();
+    for (Index i = 0; i < parts[k].left.size(); ++i) {
+      const Index at = segments_[k].begin + i;
+      if (counts(d, at))
+        spectra.add(d.deflection_m[at] + parts[k].left[i], parts[k].left[i]);
+      else
+        spectra.gap();
     }
-    const VectorXd by = -products.ldlt().solve(gradient);
-    for (std::size_t b = fold; b < blocks.size(); b += kFolds)
-      held_out +=
-          blocks[b].squares + 2.0 * by.dot(blocks[b].gradient) + by.dot(blocks[b].products * by);
   }
-  return held_out;
+  return spectra.excess();
 }
 
 Shot Shooting::judge(const VectorXd& unknowns, double squares) {
@@ -387,48 +382,25 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   std::vector<Linear> clean;
   clean.reserve(parts.size());
   for (const Linear& each : parts) clean.push_back(beside_state(each));
-  const std::vector<Sums> blocks = blocks_of(clean);
-  Sums all{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
-  MatrixXd scatter = MatrixXd::Zero(p, p);
-  for (const Sums& b : blocks) {
-    all.products += b.products;
-    all.gradient += b.gradient;
-    all.squares += b.squares;
-    scatter += b.gradient * b.gradient.transpose();
-  }
-  const VectorXd size = all.products.diagonal().cwiseSqrt().cwiseMax(1e-300);
-  const MatrixXd scaled =
-      size.cwiseInverse().asDiagonal() * all.products * size.cwiseInverse().asDiagonal();
-  const Eigen::LDLT<MatrixXd> factor{scaled};
-  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-14)) return out;
-  const auto solve = [&](const MatrixXd& right) -> MatrixXd {
-    return size.cwiseInverse().asDiagonal() *
-           factor.solve(size.cwiseInverse().asDiagonal() * right);
-  };
-  const MatrixXd inverse = solve(MatrixXd::Identity(p, p));
-  const auto count = static_cast<double>(blocks.size());
-  const double freedom =
-      static_cast<double>(samples_ - p) - 2.0 * static_cast<double>(segments_.size());
-  out.covariance =
-      count / std::max(count - static_cast<double>(p), 1.0) * inverse * scatter * inverse;
-  const MatrixXd white = all.squares / std::max(freedom, 1.0) * inverse;
-  VectorXd widen =
-      (white.diagonal().array() / out.covariance.diagonal().array().max(1e-300)).sqrt().max(1.0);
-  out.covariance = widen.asDiagonal() * out.covariance * widen.asDiagonal();
+  const BlockFit fit{blocks_of(clean)};
+  if (!fit.ok()) return out;
+  out.covariance = fit.covariance(static_cast<double>(samples_ - p) -
+                                  2.0 * static_cast<double>(segments_.size()));
   // Steps twice as fine would go this much farther.
   std::vector<Linear> fine;
   if (linearise(unknowns, 2, false, fine)) {
     VectorXd gradient = VectorXd::Zero(p);
     for (std::size_t i = 0; i < fine.size(); ++i)
       gradient += clean[i].by_unknowns.transpose() * (fine[i].left - parts[i].left);
-    const VectorXd by = solve(gradient);
+    const VectorXd by = fit.solve(gradient);
     out.covariance += by * by.transpose();
   }
   out.ok = true;
   out.unknowns = unknowns;
   out.nmse = squares / variance_m2_;
-  out.held_out_nmse = held_out_squares(all, blocks) / variance_m2_;
+  out.held_out_nmse = fit.held_out_squares() / variance_m2_;
   out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
+  out.excess = excess_of(parts);
   out.segment_s = static_cast<double>(length_) * interval_s();
   out.segments = segments_.size();
   return out;

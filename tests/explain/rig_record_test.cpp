@@ -140,9 +140,11 @@ TEST(AHystereticOscillator, IsFoundWithoutADeclaration) {
   EXPECT_EQ(effects_of(found), std::vector<std::string>{"presliding_hysteresis"})
       << summarize(found);
   EXPECT_FALSE(has_term(found.final, "coulomb")) << summarize(found);
-  EXPECT_NEAR(value_of(found, "moving_mass"), 2.0, 0.06);
-  EXPECT_NEAR(value_of(found, "stiffness"), 5e4, 2.5e3);
-  EXPECT_NEAR(value_of(found, "presliding_hysteresis_travel"), 1.25e-3, 5e-5);
+  EXPECT_NEAR(value_of(found, "moving_mass"), 2.0, 0.004);
+  EXPECT_NEAR(value_of(found, "stiffness"), 5e4, 300.0);
+  EXPECT_NEAR(value_of(found, "viscous"), 10.0, 0.3);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_travel"), 1.25e-3, 1e-5);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_shape"), -1.375, 0.003);
 }
 
 /// Force of a motion of three tones.

@@ -121,6 +121,7 @@ Json free_run_json(const FreeRunError& f) {
           {"held_out_nmse", f.nmse_of_motion},
           {"residual_m", f.residual_m},
           {"noise_m", f.noise_m},
+          {"density_ratio", f.density_ratio ? Json(*f.density_ratio) : Json(nullptr)},
           {"followed", f.followed},
           {"agrees_with_equations", f.agree},
           {"refined", f.by_motion}};
@@ -225,12 +226,16 @@ std::string free_run_text(const FreeRunError& f) {
   if (f.segments == 0) return "";
   const char* kept =
       f.by_motion ? "the law is refined by it" : "the equations are at least as certain, and stay";
-  return fmt::format(
+  std::string text = fmt::format(
       "free run of {} x {:.3g} s by the force alone: off by {:.4g} m rms, held-out nmse {} ({:.4g} "
-      "by "
-      "the equations); the deflection's noise is {:.2g} m: {}\n",
+      "by the equations); the deflection's noise is {:.2g} m",
       f.segments, f.segment_s, f.residual_m, error_text(f.nmse_of_motion), f.nmse_of_equations,
-      f.noise_m, kept);
+      f.noise_m);
+  if (f.density_ratio)
+    text +=
+        fmt::format("; where the motion is, {:.3g} times as much is left as beside it (noise: 1)",
+                    *f.density_ratio);
+  return fmt::format("{}: {}\n", text, kept);
 }
 
 std::string validated_text(const Validated& v) {

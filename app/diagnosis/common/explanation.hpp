@@ -62,9 +62,11 @@ struct FreeRunError {
   double nmse_of_motion{0.0};     ///< held out, by those that fit the motion
   double residual_m{0.0};         ///< rms, of the motion's
   double noise_m{0.0};            ///< of the deflection, rms
-  bool followed{false};           ///< no more is left than the deflection's noise
-  bool agree{false};              ///< both within their deviations
-  bool by_motion{false};          ///< the law has the motion's
+  /// Density of what is left where the motion is, over that beside it; 1: noise. Absent: unknown.
+  std::optional<double> density_ratio{};
+  bool followed{false};   ///< no more than noise is left
+  bool agree{false};      ///< both within their deviations
+  bool by_motion{false};  ///< the law has the motion's
 };
 
 /// What a diagnosis found, of a truck or a rig: explanation.json, terminal and page are made of it.

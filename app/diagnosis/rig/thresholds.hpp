@@ -85,6 +85,7 @@ inline constexpr double kHalvesApart = 3.0;  // deviations: halves differ, and t
 // The law by its own motion.
 inline constexpr double kFollowed = 1.05;  // times the deflection's noise: nothing more is left
 inline constexpr double kExact = 1e-8;     // nmse of the motion: the same
+inline constexpr double kWhite = 1.2;      // times as dense as beside the motion: the same
 inline constexpr std::array kSpeeds{1.0, 0.5, 2.0};  // of a friction that falls: starts
 inline constexpr double kScreened = 60.0;  // periods of the motion, by which forms are compared
 inline constexpr std::size_t kScreenedEffects = 5;  // of a step, the first

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "app/law/block_fit.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace dampline::app::law {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr std::size_t kFolds = 5;
+constexpr double kSingular = 1e-14;
+
+}  // namespace
+
+BlockFit::BlockFit(std::vector<Sums> blocks) : blocks_{std::move(blocks)} {
+  const auto p = blocks_.front().gradient.size();
+  all_ = {MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
+  for (const Sums& b : blocks_) {
+    all_.products += b.products;
+    all_.gradient += b.gradient;
+    all_.squares += b.squares;
+  }
+  size_ = all_.products.diagonal().cwiseSqrt().cwiseMax(1e-300);
+  scaled_.compute(size_.cwiseInverse().asDiagonal() * all_.products *
+                  size_.cwiseInverse().asDiagonal());
+}
+
+bool BlockFit::ok() const {
+  return scaled_.info() == Eigen::Success && scaled_.rcond() > kSingular;
+}
+
+MatrixXd BlockFit::solve(const MatrixXd& right) const {
+  return size_.cwiseInverse().asDiagonal() *
+         scaled_.solve(size_.cwiseInverse().asDiagonal() * right);
+}
+
+MatrixXd BlockFit::covariance(double freedom) const {
+  const auto p = size_.size();
+  MatrixXd scatter = MatrixXd::Zero(p, p);
+  for (const Sums& b : blocks_) scatter += b.gradient * b.gradient.transpose();
+  const MatrixXd inverse = solve(MatrixXd::Identity(p, p));
+  const auto count = static_cast<double>(blocks_.size());
+  const MatrixXd out =
+      count / std::max(count - static_cast<double>(p), 1.0) * inverse * scatter * inverse;
+  const MatrixXd white = all_.squares / std::max(freedom, 1.0) * inverse;
+  const VectorXd widen =
+      (white.diagonal().array() / out.diagonal().array().max(1e-300)).sqrt().max(1.0);
+  return widen.asDiagonal() * out * widen.asDiagonal();
+}
+
+double BlockFit::held_out_squares() const {
+  double held_out = 0.0;
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    MatrixXd products = all_.products;
+    VectorXd gradient = all_.gradient;
+    for (std::size_t b = fold; b < blocks_.size(); b += kFolds) {
+      products -= blocks_[b].products;
+      gradient -= blocks_[b].gradient;
+    }
+    const VectorXd by = -products.ldlt().solve(gradient);
+    for (std::size_t b = fold; b < blocks_.size(); b += kFolds)
+      held_out +=
+          blocks_[b].squares + 2.0 * by.dot(blocks_[b].gradient) + by.dot(blocks_[b].products * by);
+  }
+  return held_out;
+}
+
+}  // namespace dampline::app::law

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+namespace dampline::app::law {
+
+/// Products of the residual and of its slopes by p unknowns over some samples: [p, p], [p].
+struct Sums {
+  Eigen::MatrixXd products;
+  Eigen::VectorXd gradient;
+  double squares{0.0};
+};
+
+/// A fit at its least squares, by its sums over blocks in time: how certain the unknowns are.
+class BlockFit {
+ public:
+  /// At least one block.
+  explicit BlockFit(std::vector<Sums> blocks);
+  /// False: the samples do not tell the unknowns apart.
+  [[nodiscard]] bool ok() const;
+  /// Inverse products times `right`.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  /// From the scatter of the blocks, no less than white noise makes. `freedom`: samples less what
+  /// was fitted.
+  [[nodiscard]] Eigen::MatrixXd covariance(double freedom) const;
+  /// What every fifth block keeps by the unknowns that the others choose.
+  [[nodiscard]] double held_out_squares() const;
+
+ private:
+  std::vector<Sums> blocks_;
+  Sums all_;
+  Eigen::VectorXd size_;
+  Eigen::LDLT<Eigen::MatrixXd> scaled_;
+};
+
+}  // namespace dampline::app::law

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "dampline/numeric/fourier.hpp"
+
+namespace dampline::app::law {
+
+/// Whether what a law leaves of a motion is more than noise: spectra of both, segments of 512
+/// samples with a Hann window, half overlapping (Welch 1967). Noise is as dense beside the motion
+/// as where the motion is; what a law misses lies where the motion is.
+class LeftOver {
+ public:
+  /// The next sample of the motion as the law has it, and of what it leaves.
+  void add(double motion_m, double left_m);
+  /// The next sample does not follow the last one.
+  void gap() noexcept { fill_ = 0; }
+  /// Mean density of what is left where the motion is, over that beside it; infinite where too
+  /// little lies beside it, or the record is too short.
+  [[nodiscard]] double excess() const;
+
+ private:
+  static constexpr std::size_t kSize = Fourier512::kSize;
+  void transform();
+
+  std::array<std::array<double, kSize>, 2> held_{};
+  std::size_t fill_{0};
+  Fourier512 fourier_;
+  std::size_t segments_{0};
+  std::array<double, kSize / 2> motion_{};
+  std::array<double, kSize / 2> left_{};
+};
+
+}  // namespace dampline::app::law

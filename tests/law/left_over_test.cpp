@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "app/law/left_over.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace dampline::app::law {
+namespace {
+
+/// A motion of `share` of the rate and below. What is left: noise of 1, and `missed` of the motion.
+double excess_of(int samples, double share, double missed, bool gaps = false) {
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> normal;
+  LeftOver out;
+  for (int i = 0; i < samples; ++i) {
+    const double motion = std::sin(2.0 * std::numbers::pi * share * i) +
+                          std::sin(2.0 * std::numbers::pi * 0.37 * share * i + 1.0);
+    if (gaps && i % 300 == 0) out.gap();
+    out.add(50.0 * motion, normal(random) + missed * motion);
+  }
+  return out.excess();
+}
+
+TEST(LeftOver, TellsNoiseFromWhatALawMisses) {
+  EXPECT_NEAR(excess_of(20'000, 0.06, 0.0), 1.0, 0.1);
+  EXPECT_NEAR(excess_of(40'000, 0.2, 0.0), 1.0, 0.1);
+  // A hundredth of the motion and a quarter of the noise: 3 % of the power that is left.
+  EXPECT_GT(excess_of(20'000, 0.06, 0.25), 1.4);
+}
+
+TEST(LeftOver, SaysNothingWhereItCannotTell) {
+  EXPECT_TRUE(std::isinf(excess_of(2'000, 0.06, 0.0)));         // too short
+  EXPECT_TRUE(std::isinf(excess_of(20'000, 0.4, 0.0)));         // nothing beside the motion
+  EXPECT_TRUE(std::isinf(excess_of(20'000, 0.06, 0.0, true)));  // no 512 samples in a row
+  LeftOver nothing;
+  for (int i = 0; i < 20'000; ++i) nothing.add(std::sin(0.2 * i), 0.0);
+  EXPECT_TRUE(std::isinf(nothing.excess()));
+}
+
+}  // namespace
+}  // namespace dampline::app::law
