@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -45,23 +44,23 @@ void LeftOver::transform() {
   ++segments_;
 }
 
-double LeftOver::excess() const {
-  constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  if (segments_ < kFewestSegments) return kUnknown;
+std::optional<double> LeftOver::density_ratio() const {
+  if (segments_ < kFewestSegments) return {};
   const auto speed = [&](std::size_t k) { return static_cast<double>(k * k) * motion_[k]; };
   double all = 0.0;
   for (std::size_t k = 1; k < kSize / 2; ++k) all += speed(k);
   std::size_t edge = 1;
   for (double sum = speed(1); edge < kHighestBin && sum < kOfMotion * all;) sum += speed(++edge);
   const std::size_t beside = edge + 1 + kBeside;
-  if (beside + kFewestBins > kHighestBin + 1) return kUnknown;
+  if (beside + kFewestBins > kHighestBin + 1) return {};
   const auto density = [&](std::size_t first, std::size_t end) {
     return std::accumulate(left_.begin() + static_cast<std::ptrdiff_t>(first),
                            left_.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
            static_cast<double>(end - first);
   };
   const double noise = density(beside, kHighestBin + 1);
-  return noise > 0.0 ? density(1, edge + 1) / noise : kUnknown;
+  if (!(noise > 0.0)) return {};
+  return density(1, edge + 1) / noise;
 }
 
 }  // namespace dampline::app::law

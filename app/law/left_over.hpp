@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "dampline/numeric/fourier.hpp"
 
@@ -16,9 +17,9 @@ class LeftOver {
   void add(double motion_m, double left_m);
   /// The next sample does not follow the last one.
   void gap() noexcept { fill_ = 0; }
-  /// Mean density of what is left where the motion is, over that beside it; infinite where too
-  /// little lies beside it, or the record is too short.
-  [[nodiscard]] double excess() const;
+  /// Mean density of what is left where the motion is, over that beside it; absent where too little
+  /// lies beside it, or the record is too short.
+  [[nodiscard]] std::optional<double> density_ratio() const;
 
  private:
   static constexpr std::size_t kSize = Fourier512::kSize;

@@ -87,7 +87,7 @@ class Shooting {
   bool settle(const VectorXd& unknowns);
   bool descend(VectorXd& unknowns, double enough, double& squares);
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
-  [[nodiscard]] double excess_of(const std::vector<Linear>& parts) const;
+  [[nodiscard]] std::optional<double> density_ratio_of(const std::vector<Linear>& parts) const;
   Shot judge(const VectorXd& unknowns, double squares);
 
   const LawOf& law_of_;
@@ -358,7 +358,7 @@ std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts) const {
   return out;
 }
 
-double Shooting::excess_of(const std::vector<Linear>& parts) const {
+std::optional<double> Shooting::density_ratio_of(const std::vector<Linear>& parts) const {
   LeftOver spectra;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const Drive& d = drives_[segments_[k].drive];
@@ -371,7 +371,7 @@ double Shooting::excess_of(const std::vector<Linear>& parts) const {
         spectra.gap();
     }
   }
-  return spectra.excess();
+  return spectra.density_ratio();
 }
 
 Shot Shooting::judge(const VectorXd& unknowns, double squares) {
@@ -400,7 +400,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   out.nmse = squares / variance_m2_;
   out.held_out_nmse = fit.held_out_squares() / variance_m2_;
   out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
-  out.excess = excess_of(parts);
+  out.density_ratio = density_ratio_of(parts);
   out.segment_s = static_cast<double>(length_) * interval_s();
   out.segments = segments_.size();
   return out;

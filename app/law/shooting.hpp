@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "app/law/free_run.hpp"
@@ -30,8 +30,9 @@ struct Shot {
   double nmse{0.0};  ///< of the deflection
   double held_out_nmse{0.0};  ///< each of five parts by the unknowns without it
   double residual_m{0.0};     ///< rms
-  /// Density of what is left where the motion is, over that beside it; 1: noise (LeftOver).
-  double excess{std::numeric_limits<double>::infinity()};
+  /// Density of what is left where the motion is, over that beside it; 1: noise (LeftOver). Absent:
+  /// unknown.
+  std::optional<double> density_ratio{};
   double segment_s{0.0};
   double first_segment_s{0.0};  ///< the shortest that were followed
   std::size_t segments{0};

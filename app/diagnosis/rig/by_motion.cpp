@@ -186,8 +186,9 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
   out.nmse_of_motion = motion.held_out_nmse;
   out.residual_m = motion.residual_m;
   out.noise_m = noise_m;
-  out.followed = follows(motion, noise_m) || motion.excess < kWhite;
-  if (std::isfinite(motion.excess)) out.density_ratio = motion.excess;
+  out.density_ratio = motion.density_ratio;
+  out.followed =
+      follows(motion, noise_m) || (motion.density_ratio && *motion.density_ratio < kWhite);
   out.agree = agree(rows, moved.joint.covariance, motion);
   // A law that misses more than noise is held to its force, unless its motion is another one; over
   // short segments, since in long ones chaos parts the like too.
