@@ -30,6 +30,7 @@ Result<AssemblerConfig> SampleAssembler::check(const AssemblerConfig& config) no
 
 SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
     : most_missing_{config.most_missing},
+      period_ns_{1e9 / config.sample_rate_hz},
       lanes_{ChannelLane{config.channels[0], config.sample_rate_hz},
              ChannelLane{config.channels[1], config.sample_rate_hz},
              ChannelLane{config.channels[2], config.sample_rate_hz},
@@ -138,6 +139,7 @@ void SampleAssembler::push_among(Count lanes, const CanFrame& frame) noexcept {
   }
   if (!aligned_) {
     if (!ready_to_align(kAlignFrames)) return;
+    if (is_bursty() && !ready_to_align(kAlignBurst)) return;
     align();
     far = true;
   }
@@ -160,6 +162,7 @@ void SampleAssembler::push(const CanFrame& frame) noexcept {
 void SampleAssembler::push_unusual(ChannelLane& lane, const CanFrame& frame) noexcept {
   if (paused(lane, frame.time_ns)) restart(frame.time_ns);
   lane.push(frame);
+  if (lane.has_lost_track()) restart(frame.time_ns);
 }
 
 void SampleAssembler::flush() noexcept {
@@ -196,13 +199,37 @@ bool SampleAssembler::ready_to_align(std::uint64_t frames) const noexcept {
                      [frames](const ChannelLane& lane) { return lane.since_start() >= frames; });
 }
 
+bool SampleAssembler::is_bursty() const noexcept {
+  const auto end = lanes_.begin() + static_cast<std::ptrdiff_t>(count_);
+  return std::any_of(lanes_.begin(), end, [](const ChannelLane& lane) { return lane.is_bursty(); });
+}
+
 // Lines, not single frames, are compared: one late frame must not shift a channel for good.
-void SampleAssembler::align() noexcept {
+void SampleAssembler::find_offsets() noexcept {
   const std::int64_t now_ns = lanes_[0].line().time_ns();
   const double tick_now = lanes_[0].line().tick_at(now_ns);
+  for (std::size_t c = 0; c < count_; ++c)
+    lane_offset_[c] = std::llround(lanes_[c].line().tick_at(now_ns) - tick_now);
+}
+
+// A line through bursts wavers by half their length; their ends do not.
+void SampleAssembler::find_offsets_of_bursts() noexcept {
+  const std::int64_t first_ns = lanes_[0].earliest_ns(kAlignBurst, period_ns_);
+  for (std::size_t c = 0; c < count_; ++c) {
+    const std::int64_t after_ns = lanes_[c].earliest_ns(kAlignBurst, period_ns_) - first_ns;
+    lane_offset_[c] = lanes_[c].newest() - lanes_[0].newest() -
+                      std::llround(static_cast<double>(after_ns) / period_ns_);
+  }
+}
+
+void SampleAssembler::align() noexcept {
+  if (is_bursty()) {
+    find_offsets_of_bursts();
+  } else {
+    find_offsets();
+  }
   std::int64_t oldest = next_tick_;
   for (std::size_t c = 0; c < count_; ++c) {
-    lane_offset_[c] = std::llround(lanes_[c].line().tick_at(now_ns) - tick_now);
     oldest = std::max(oldest, lanes_[c].oldest() - lane_offset_[c]);
     const std::int64_t ticks = lanes_[c].first() - lane_offset_[c] - before_pause_[c] - 1;
     if (after_pause_ && ticks > 0) counts_.channels[c].paused += static_cast<std::uint64_t>(ticks);

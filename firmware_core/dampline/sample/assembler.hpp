@@ -41,12 +41,15 @@ struct AssemblerCounts {
 /// and brought together by tick.
 ///
 /// Channels are aligned once by time, to the nearest tick, over the first kAlignFrames of each, and
-/// then kept by their counters. An instant waits kWaitTicks for its channels, so frames may swap;
-/// an instant that lacks a channel is dropped and the tick jumps, unless few are. After a pause of
-/// kPauseTicks the channels are aligned anew. The work of one push() is bounded by kLaneSpan steps.
+/// then kept by their counters. Where frames come in bursts the last one of each counts, over
+/// kAlignBurst frames, and a node that was off makes all be aligned anew. An instant waits
+/// kWaitTicks for its channels, so frames may swap; an instant that lacks a channel is dropped and
+/// the tick jumps, unless few are. After a pause of kPauseTicks the channels are aligned anew. The
+/// work of one push() is bounded by kLaneSpan steps.
 class SampleAssembler {
  public:
   static constexpr std::uint64_t kAlignFrames = 16;
+  static constexpr std::int64_t kAlignBurst = 48;
   static constexpr std::int64_t kWaitTicks = 16;
   static constexpr std::int64_t kPauseTicks = 1024;
 
@@ -96,8 +99,12 @@ class SampleAssembler {
   [[nodiscard]] bool waits(Count lanes) const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
+  [[nodiscard]] bool is_bursty() const noexcept;
+  void find_offsets() noexcept;
+  void find_offsets_of_bursts() noexcept;
 
   std::int64_t most_missing_;
+  double period_ns_;                             // nominal
   std::size_t count_{kChannels};                 // of lanes that are used
   std::array<std::size_t, kExtras> extra_of_{};  // by the lane after the three
   std::array<ChannelLane, kMostLanes> lanes_;

@@ -2,6 +2,7 @@
 #include "dampline/sample/channel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace dampline {
@@ -30,7 +31,7 @@ void ChannelLane::restart(std::int64_t first_tick) noexcept {
   forget();
   first_tick_ = newest_ = first_tick;
   since_start_ = 0;
-  counting_ = false;
+  counting_ = lost_track_ = false;
 }
 
 bool ChannelLane::push_next(const CanFrame& frame) noexcept {
@@ -80,6 +81,12 @@ void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noex
     case Place::kBehind:
       store_late(reading);
       break;
+    case Place::kLostTrack:
+      ++counts_.realigned;
+      counts_.misjudged += suspects_;
+      suspects_ = 0;
+      lost_track_ = true;
+      [[fallthrough]];
     case Place::kOutOfStep:
       ++counts_.out_of_step;
       break;
@@ -159,6 +166,18 @@ void ChannelLane::store_late(const Reading& reading) noexcept {
   kept_[slot_of(reading.tick)] = reading;
   ++counts_.readings;
   if (reading.saturated) ++counts_.saturated;
+}
+
+std::int64_t ChannelLane::earliest_ns(std::int64_t ticks, double period_ns) const noexcept {
+  const std::int64_t newest_ns = find(newest_)->time_ns;
+  double earliest_ns = 0.0;  // after it
+  for (std::int64_t ago = 0; ago < ticks; ++ago) {
+    const Reading* const reading = find(newest_ - ago);
+    if (reading == nullptr) continue;
+    const auto before_ns = static_cast<double>(reading->time_ns - newest_ns);
+    earliest_ns = std::min(earliest_ns, before_ns + static_cast<double>(ago) * period_ns);
+  }
+  return newest_ns + std::llround(earliest_ns);
 }
 
 std::int64_t ChannelLane::oldest() const noexcept {

@@ -113,6 +113,15 @@ class ChannelLane {
   [[nodiscard]] const TickLine& line() const noexcept {
     return config_.has_counter ? by_counter_.line() : by_time_.line();
   }
+  [[nodiscard]] bool is_bursty() const noexcept {
+    return config_.has_counter && by_counter_.is_bursty();
+  }
+  /// Time and counters do not tell where the newest frames belong: to be restarted, with the
+  /// others.
+  [[nodiscard]] bool has_lost_track() const noexcept { return lost_track_; }
+  /// When the newest reading would have come at the earliest, by those of so many ticks. Frames may
+  /// be late, not early: of a burst the last one is in time.
+  [[nodiscard]] std::int64_t earliest_ns(std::int64_t ticks, double period_ns) const noexcept;
   [[nodiscard]] const ChannelCounts& counts() const noexcept { return counts_; }
 
  private:
@@ -143,6 +152,7 @@ class ChannelLane {
   std::int64_t first_tick_{0};
   std::int64_t newest_{0};
   std::uint64_t since_start_{0};
+  bool lost_track_{false};
   std::uint64_t suspects_{0};  // not used, and perhaps a restarted node's first frames
   ChannelCounts counts_;
 };

@@ -10,7 +10,9 @@ namespace {
 
 constexpr int kConfirmingFrames = 4;
 constexpr double kPeriodRange = 0.5;
-constexpr double kCertain = 0.49;  // of a wrap: a next counter cannot be another wrap's
+constexpr double kCertain = 0.49;         // of a wrap: a next counter cannot be another wrap's
+constexpr double kFarTicks = 1.0;         // off the line: jitter is less, and a burst of four more
+constexpr double kSmallStep = 1.0 / 8.0;  // of a wrap: within a burst a loss, no other counter
 
 // A reading this little after the one before is the same instant once more, in ticks.
 constexpr double kRepeatedTicks = 0.25;
@@ -24,13 +26,13 @@ CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
       mask_{counter_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << counter_bits) - 1},
       wrap_{std::ldexp(1.0, static_cast<int>(counter_bits))},
       tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)},
-      usual_{std::min(kCertain * wrap_, kBurstTicks)} {}
+      usual_{std::min(kCertain * wrap_, kFarTicks)} {}
 
 void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
                             std::int64_t time_ns) noexcept {
   line_.start(tick, time_ns);
   newest_counter_ = counter;
-  streak_ = 0;
+  streak_ = far_frames_ = 0;
 }
 
 std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
@@ -47,7 +49,16 @@ std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) co
 bool CounterSequence::fits(std::int64_t tick, double due_tick) const noexcept {
   const double off = std::abs(due_tick - static_cast<double>(tick));
   if (tick == newest() + 1) return off <= kBurstTicks;
-  return tick > newest() && off <= tolerance_;
+  if (tick <= newest()) return false;
+  if (!is_bursty()) return off <= tolerance_;
+  const auto step = static_cast<double>(tick - newest());
+  return off <= kBurstTicks && step <= std::min(kSmallStep * wrap_, kBurstTicks);
+}
+
+void CounterSequence::note_far(std::int64_t tick) noexcept {
+  if (tick - far_tick_ > kBurstPause) far_frames_ = 0;
+  far_frames_ = std::min(far_frames_ + 1, kBurstFrames);
+  far_tick_ = tick;
 }
 
 Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t counter,
@@ -60,7 +71,10 @@ Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t 
 Placement CounterSequence::place(std::uint64_t counter, std::int64_t time_ns) noexcept {
   const double due_tick = line_.tick_at(time_ns);
   const std::int64_t tick = resolve(counter, due_tick);
-  if (fits(tick, due_tick)) return accept(Place::kNext, tick, counter, time_ns);
+  if (fits(tick, due_tick)) {
+    if (std::abs(due_tick - static_cast<double>(tick)) >= kFarTicks) note_far(tick);
+    return accept(Place::kNext, tick, counter, time_ns);
+  }
   return suspect(tick, counter, time_ns);
 }
 
@@ -79,9 +93,13 @@ Placement CounterSequence::suspect(std::int64_t tick, std::uint64_t counter,
     streak_error_ = 0.0;
   }
   streak_counter_ = counter;
-  streak_error_ += line_.tick_at(time_ns) - static_cast<double>(streak_tick_);
+  const double last_error = line_.tick_at(time_ns) - static_cast<double>(streak_tick_);
+  streak_error_ += last_error;
   if (streak_ >= kConfirmingFrames) {
     const double error = streak_error_ / static_cast<double>(streak_);
+    // Of frames that all come at once, each is a tick earlier for its counter than the one before.
+    const bool at_once = error - last_error > 0.25 * static_cast<double>(streak_ - 1);
+    if (is_bursty() || at_once) return {Place::kLostTrack, tick, streak_};
     const bool counter_is_right = std::abs(error) <= tolerance_ && streak_tick_ > newest();
     if (counter_is_right) return accept(Place::kNext, streak_tick_, counter, time_ns);
     const auto by_time = streak_tick_ + static_cast<std::int64_t>(std::llround(error));

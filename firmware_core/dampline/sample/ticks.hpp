@@ -107,6 +107,7 @@ enum class Place : std::uint8_t {
   kBehind,     ///< out of order or repeated: its tick is not after the newest
   kOutOfStep,  ///< counter and time contradict each other; not used
   kRealigned,  ///< a new sample, and the tick was set by time: the node restarted its counter
+  kLostTrack,  ///< not used, nor what follows until the sequence is started anew
 };
 struct Placement {
   Place place{Place::kOutOfStep};
@@ -116,7 +117,8 @@ struct Placement {
 
 /// Ticks from a counter of any length. The counter decides; the time resolves how often it wrapped.
 /// A frame whose counter does not fit its time is not used; four of them in a row that agree with
-/// each other are a restarted node, whose tick is then set by time.
+/// each other are a restarted node, whose tick is then set by time. Where frames come in bursts
+/// time is too coarse for that: track is lost, and the channels have to be aligned anew.
 class CounterSequence {
  public:
   /// counter_bits 1...64.
@@ -129,10 +131,17 @@ class CounterSequence {
   bool place_next(std::uint64_t counter, std::int64_t time_ns) noexcept;
   [[nodiscard]] const TickLine& line() const noexcept { return line_; }
   [[nodiscard]] std::int64_t newest() const noexcept { return line_.tick(); }
+  /// Frames of late came many at once: a time tells the tick no better than to a burst's length.
+  [[nodiscard]] bool is_bursty() const noexcept {
+    return far_frames_ >= kBurstFrames && newest() - far_tick_ <= kBurstPause;
+  }
 
  private:
   // Frames delivered in a burst may be this late and still be numbered by their counter.
   static constexpr double kBurstTicks = 32.0;
+  static constexpr int kBurstFrames = 4;
+  static constexpr std::int64_t kBurstPause = 64;
+  void note_far(std::int64_t tick) noexcept;
   [[nodiscard]] std::int64_t resolve(std::uint64_t counter, double due_tick) const noexcept;
   [[nodiscard]] bool fits(std::int64_t tick, double due_tick) const noexcept;
   [[nodiscard]] bool continues_streak(std::uint64_t counter) const noexcept;
@@ -150,6 +159,8 @@ class CounterSequence {
   std::uint64_t streak_counter_{0};
   std::int64_t streak_tick_{0};
   double streak_error_{0.0};
+  int far_frames_{0};  // next ones, far off the line, without a long stretch of others between
+  std::int64_t far_tick_{0};
 };
 
 inline bool CounterSequence::place_next(std::uint64_t counter, std::int64_t time_ns) noexcept {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+
+#include "dampline/sample/assembler.hpp"
+#include "frame_maker.hpp"
+
+namespace dampline {
+namespace {
+
+using test::assemble;
+using test::Nodes;
+using test::sort_by_time;
+
+/// A gateway hands frames on so many at once; a frame's time is that of its burst.
+struct Gateway {
+  std::int64_t burst{10};
+  std::array<std::int64_t, kChannels> phase{};  ///< of each channel's bursts
+  double loss{0.0};
+  std::size_t node{1};     ///< is off for three seconds,
+  std::int64_t off_at{0};  ///< from this tick; 0: never
+  std::int64_t counter_shift{0};
+
+  static constexpr std::int64_t kOff = 900;
+  static constexpr std::int64_t kTicks = 9000;
+
+  [[nodiscard]] std::vector<CanFrame> frames(const Nodes& nodes, std::mt19937& random) const {
+    std::uniform_real_distribution<double> chance{0.0, 1.0};
+    std::vector<CanFrame> all;
+    for (std::int64_t tick = 0; tick < kTicks; ++tick) {
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const bool later = c == node && off_at > 0 && tick >= off_at;
+        if ((later && tick < off_at + kOff) || chance(random) < loss) continue;
+        CanFrame frame = nodes.frame(c, tick, 0, later ? counter_shift : 0);
+        frame.time_ns = nodes.time_of((tick + phase[c]) / burst * burst + burst - phase[c]);
+        all.push_back(frame);
+      }
+    }
+    sort_by_time(all);
+    return all;
+  }
+};
+
+/// Whose channels are not of one instant, whatever its tick.
+int mixed_samples(const std::vector<Sample>& samples) {
+  const auto instant = [](const Sample& sample, std::size_t channel) {
+    for (std::int64_t tick = 0; tick < 1999; ++tick)
+      if (std::abs(sample.accel_mps2[channel] - Nodes::value(channel, tick)) < 1e-9) return tick;
+    return std::int64_t{-1};
+  };
+  return static_cast<int>(std::count_if(samples.begin(), samples.end(), [&](const Sample& sample) {
+    const std::int64_t tick = instant(sample, 0);
+    return instant(sample, 1) != tick || instant(sample, 2) != tick;
+  }));
+}
+
+class Burst : public ::testing::TestWithParam<unsigned> {
+ protected:
+  std::mt19937 random_{GetParam()};
+  Nodes nodes_{.counter_bits = GetParam() % 2 == 0 ? 8U : 16U};
+  SampleAssembler assembler_{nodes_.config()};
+  std::int64_t draw(std::int64_t below) { return static_cast<std::int64_t>(random_()) % below; }
+};
+
+TEST_P(Burst, LosesNothingOfANodeThatStays) {
+  Gateway gateway;
+  for (std::int64_t& phase : gateway.phase) phase = draw(gateway.burst);
+  const auto samples = assemble(assembler_, gateway.frames(nodes_, random_));
+  EXPECT_EQ(mixed_samples(samples), 0);
+  EXPECT_GE(samples.size(), 8990U);
+}
+
+TEST_P(Burst, AlignsANodeThatWasOffAndCountsOn) {
+  Gateway gateway{.node = GetParam() % kChannels, .off_at = 60 + draw(4000)};
+  const auto samples = assemble(assembler_, gateway.frames(nodes_, random_));
+  EXPECT_EQ(mixed_samples(samples), 0);
+  EXPECT_GE(samples.size(), 8030U);
+}
+
+TEST_P(Burst, AlignsANodeThatWasOffAndStartsAnew) {
+  Gateway gateway{.node = GetParam() % kChannels, .off_at = 60 + draw(4000)};
+  gateway.counter_shift = draw(60'000);
+  for (std::int64_t& phase : gateway.phase) phase = draw(gateway.burst);
+  const auto frames = gateway.frames(nodes_, random_);
+  const auto samples = assemble(assembler_, frames);
+  EXPECT_EQ(mixed_samples(samples), 0);
+  EXPECT_GE(samples.size(), 8030U);
+  EXPECT_EQ(assembler_.counts().restarts, 1U);
+  EXPECT_EQ(assembler_.counts().channels[gateway.node].realigned, 1U);
+  const FrameLedger ledger = ledger_of(assembler_.counts(), 0);
+  EXPECT_EQ(ledger.processed + ledger.excluded, frames.size());
+}
+
+TEST_P(Burst, LosesOnlyTheInstantsOfLostFrames) {
+  Gateway gateway{.loss = 0.01};
+  const auto samples = assemble(assembler_, gateway.frames(nodes_, random_));
+  EXPECT_EQ(mixed_samples(samples), 0);
+  EXPECT_GE(samples.size(), 8600U);
+  EXPECT_LE(assembler_.counts().restarts, 1U);  // lost from the first burst, before it is known
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Burst, ::testing::Range(1U, 21U));
+
+}  // namespace
+}  // namespace dampline
