@@ -31,7 +31,7 @@ struct AssemblerCounts {
   std::uint64_t samples{0};      ///< complete instants
   std::uint64_t incomplete{0};   ///< instants that lacked a channel
   std::uint64_t completable{0};  ///< readings of those that were handed out all the same
-  std::uint64_t restarts{0};     ///< long pauses after which the channels were aligned anew
+  std::uint64_t restarts{0};     ///< pauses after which all channels were aligned anew
   std::uint64_t overflow{0};     ///< samples lost because pop() was not called
   std::size_t lanes{kChannels};  ///< channels that make a sample: the three, then the extras named
   std::array<ChannelCounts, kChannels + kExtras> channels{};
