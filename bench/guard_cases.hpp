@@ -172,6 +172,16 @@ inline std::vector<GuardCase> lasting_cases() {
          const std::size_t c = any_channel(x);
          r.faults.burst_mps2[c] = between(x, 8.0, 20.0) * (c == 0 ? 0.02 : 0.03);
        }},
+      {"loose cable that reads 0 or full scale",
+       {FaultKind::kStuckChannel, FaultKind::kSpikes, FaultKind::kNoiseBurst,
+        FaultKind::kExcessNoise, FaultKind::kClipping, FaultKind::kDcJump},
+       [](R& r, X& x) {
+         any_time(r, x);
+         r.faults.end_s = r.faults.start_s + between(x, 20.0, 120.0);
+         const std::size_t c = any_channel(x);
+         r.faults.opens_hz[c] = between(x, 0.3, 5.0);
+         if (x.uniform() < 0.5) r.faults.open_mps2 = -r.simulation.sensors.range_mps2[c];
+       }},
   };
 }
 
@@ -284,6 +294,19 @@ inline std::vector<GuardCase> sound_cases() {
                      speed.changed_speed_mps = speed.speed_mps * (1.0 + either_sign(x, 0.03, 0.12));
                      speed.ramp_mps2 = between(x, 0.05, 0.3);
                      r.guard.speed_mps = 0.0;  // no odometer
+                   }});
+  cases.push_back({"braking by 20-60 %", {}, [](R& r, X& x) {
+                     auto& speed = r.simulation.speed;
+                     speed.change_time_s = any_time(r, x);
+                     speed.changed_speed_mps = speed.speed_mps * (1.0 - between(x, 0.2, 0.6));
+                     speed.ramp_mps2 = between(x, 0.3, 1.0);
+                     r.guard.speed_mps = 0.0;
+                   }});
+  cases.push_back({"stop and go", {}, [](R& r, X& x) {
+                     const double start_s = any_time(r, x);
+                     r.simulation.speed.standstills[0] = {start_s, start_s + between(x, 5.0, 40.0)};
+                     r.simulation.speed.ramp_mps2 = between(x, 0.3, 1.0);
+                     if (x.uniform() < 0.5) r.guard.speed_mps = 0.0;
                    }});
   cases.push_back(
       {"without short waves", {}, [](R& r, X&) { r.simulation.track.short_wave_mps2 = 0.0; }});

@@ -242,6 +242,14 @@ double FaultyRecord::distorted(std::size_t channel, double accel_mps2, double ti
   return noise > 0.0 ? value + noise * random_.normal() : value;
 }
 
+bool FaultyRecord::is_open(std::size_t channel, std::int64_t n, double time_s) {
+  const double opens_hz = faults_.opens_hz[channel];
+  if (!(opens_hz > 0.0) || time_s < faults_.start_s || time_s >= faults_.end_s) return false;
+  if (n >= open_until_[channel] && random_.uniform() < opens_hz / kSampleRateHz)
+    open_until_[channel] = n + 1 + sample_of(0.002 + 0.048 * random_.uniform());
+  return n < open_until_[channel];
+}
+
 void FaultyRecord::convert(SimulatedSample& sample, std::size_t channel, double accel_mps2) const {
   const double step = count_scale_mps2(simulation_config_.sensors.range_mps2[channel]);
   auto counts = static_cast<int>(std::lround(std::clamp(
@@ -269,6 +277,7 @@ SimulatedSample FaultyRecord::faulty(std::int64_t n) {
     if (std::ranges::count(spike_ticks_[c], n) > 0) {
       value += random_.uniform() < 0.5 ? -faults_.spike_mps2 : faults_.spike_mps2;
     }
+    if (is_open(c, n, time_s)) value = faults_.open_mps2;
     convert(sample, c, value);
   }
   return sample;

@@ -89,7 +89,10 @@ struct RecordFaultConfig {
   std::array<int, kChannels> spikes{};         ///< single wrong samples, at random times
   double spike_mps2{20.0};                     ///< their height
   double record_s{300.0};                      ///< spikes are spread over this
-  std::array<int, kChannels> lost_bits{};      ///< lowest bits that stay 0
+  /// Contacts that open a second, each for 2 to 50 ms, from start_s to end_s: a loose cable.
+  std::array<double, kChannels> opens_hz{};
+  double open_mps2{0.0};                   ///< what an open contact reads
+  std::array<int, kChannels> lost_bits{};  ///< lowest bits that stay 0
   std::array<bool, kChannels> inverted{};
   std::array<std::size_t, kChannels> source{0, 1, 2};  ///< {1, 0, 2}: frame and wheelset 1 swapped
 };
@@ -111,6 +114,7 @@ class FaultyRecord {
   [[nodiscard]] const SimulatedSample& at(std::int64_t n) const;
   [[nodiscard]] double delay_samples(std::size_t channel, double time_s) const;
   [[nodiscard]] double delayed(std::size_t channel, double time_s);
+  [[nodiscard]] bool is_open(std::size_t channel, std::int64_t n, double time_s);
   [[nodiscard]] double distorted(std::size_t channel, double accel_mps2, double time_s);
   void convert(SimulatedSample& sample, std::size_t channel, double accel_mps2) const;
   [[nodiscard]] SimulatedSample faulty(std::int64_t n);
@@ -121,6 +125,7 @@ class FaultyRecord {
   Random random_;
   std::vector<SimulatedSample> ring_;
   std::array<std::vector<std::int64_t>, kChannels> spike_ticks_{};
+  std::array<std::int64_t, kChannels> open_until_{};
   std::int64_t pulled_{0};  // samples of the simulation so far
   std::int64_t source_{0};  // the next to hand out
   std::int64_t tick_{0};

@@ -149,6 +149,47 @@ TEST(Guard, TellsAChangeOfSpeedFromATimingFault) {
   }
 }
 
+// Friction holds the frame for another share of the time at another speed, so that its lag changes.
+TEST(Guard, TakesBrakingForARide) {
+  for (const double factor : {0.8, 0.65, 0.45}) {
+    for (const std::uint64_t seed : {1U, 2U, 4U}) {
+      const auto guard = run([&](Trial& s) {
+        s.simulation.seed = seed;
+        s.length_s = 240.0;
+        s.guard.speed_mps = 0.0;
+        s.simulation.speed.change_time_s = 100.0;
+        s.simulation.speed.changed_speed_mps = factor * s.simulation.speed.speed_mps;
+      });
+      EXPECT_THAT(names(*guard), IsEmpty()) << factor << " seed " << seed;
+      EXPECT_EQ(guard->inputs().speed_changes, 1U) << factor << " seed " << seed;
+    }
+  }
+}
+
+TEST(Guard, TakesAStopForARide) {
+  for (const std::uint64_t seed : {2U, 3U, 5U}) {
+    const auto guard = run([&](Trial& s) {
+      s.simulation.seed = seed;
+      s.length_s = 240.0;
+      s.guard.speed_mps = 0.0;
+      s.simulation.speed.standstills[0] = {120.0, 140.0};
+    });
+    EXPECT_THAT(names(*guard), IsEmpty()) << seed;
+  }
+}
+
+TEST(Guard, NamesALooseCable) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto guard = run([c](Trial& s) { s.faults.opens_hz[c] = 2.0; });
+    const Fault& fault = only(*guard);
+    EXPECT_STREQ(name_of(fault.kind), "stuck_channel");
+    EXPECT_EQ(fault.channel, channel_of(c));
+    EXPECT_NEAR(fault.time_s, 80.0, 5.0);
+    EXPECT_LE(fault.size, 0.2);
+    EXPECT_GT(fault.count, 5U);
+  }
+}
+
 TEST(Guard, MeasuresAGainStep) {
   const auto guard = run([](Trial& s) { s.faults.gain_step[1] = 0.03; });
   const Fault& fault = only(*guard);

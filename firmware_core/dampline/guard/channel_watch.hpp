@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -70,11 +71,16 @@ struct CodeVerdict {
 class CodeWatch {
  public:
   void update(std::int64_t tick, std::int64_t code) noexcept;
+  /// Lowest bits that have not moved in this block; some before the first ones do.
+  [[nodiscard]] int dead_bits() const noexcept {
+    return std::min(std::countr_zero(moved_bits_), kMostDead);
+  }
   /// Judges the block and begins the next one.
   [[nodiscard]] CodeVerdict close() noexcept;
 
  private:
   static constexpr std::array<std::size_t, 3> kWidths{1, 2, 4};
+  static constexpr int kMostDead = 16;
   struct Pile {  // of all blocks so far, the one sample that each extreme has by definition left
                  // out
     std::array<double, 3> outer{};
@@ -98,13 +104,14 @@ class CodeWatch {
 
 /// Counts samples that say in all channels what the one before said. Without a counter that is how
 /// a repeated sample looks; by chance it happens too, as often as with the sample before that.
+/// Where the car hardly moves it says nothing.
 class RepeatWatch {
  public:
   using Codes = std::array<std::int64_t, kChannels>;
   /// True when the codes are those of the sample before.
   bool update(const Codes& codes) noexcept {
-    const bool same = seen_ >= 1 && codes == last_[0];
-    const bool chance = seen_ >= 2 && codes == last_[1];
+    const bool same = seen_ >= 2 && codes == last_[0] && moved();
+    const bool chance = seen_ >= 2 && codes == last_[1] && moved();
     if (seen_ >= 1) samples_ += 1.0;
     for (std::size_t c = 0; seen_ >= 1 && c < kChannels; ++c)
       if (codes[c] == last_[0][c]) alike_[c] += 1.0;
@@ -132,12 +139,19 @@ class RepeatWatch {
   void restart() noexcept { seen_ = 0; }
 
  private:
+  /// Before this sample.
+  [[nodiscard]] bool moved() const noexcept {
+    std::int64_t codes = 0;
+    for (std::size_t c = 0; c < kChannels; ++c) codes += std::abs(last_[0][c] - last_[1][c]);
+    return codes >= kMoves;
+  }
   /// Repetitions of all channels if each repeated its code by itself: slow motion, coarse steps.
   [[nodiscard]] double by_chance() const noexcept {
     double count = samples_;
     for (const double alike : alike_) count *= alike / std::max(samples_, 1.0);
     return count;
   }
+  static constexpr std::int64_t kMoves = 6;  // codes, of all channels together
   static constexpr double kAllowed = 5.0;
   static constexpr double kFewByChance = 2.0;  // 1.2 in the reference runs
   static constexpr double kChance = 5.0;  // of smooth motion the nearer sample is the more alike

@@ -24,6 +24,12 @@ constexpr double kJumpsAlike = 0.25;  // of the largest
 constexpr double kJumpsAlikeMps2 = 0.1;
 constexpr double kFewSpikes = 3.0;
 constexpr double kShareOfImpacts = 2.0;
+constexpr std::int64_t kLeastHeld = 4;  // samples
+constexpr std::int64_t kLongHeld = 6;
+constexpr double kLeap = 3.0;  // deviations of the second difference
+constexpr double kLeapOfLong = 0.3;
+constexpr double kLeapCodes = 6.0;  // that the channel resolves
+constexpr double kFewContacts = 2.5;
 constexpr double kTallyKept = 0.98;  // a block
 constexpr double kWrongRate = 0.003;
 constexpr int kRateBlocks = 3;
@@ -219,11 +225,16 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     const std::int64_t another = codes[(c + 2) % kChannels];
     const std::int64_t sum = other + another;
     if (run.first_tick == 0 || codes[c] != run.code) {
+      if (last_.tick - run.first_tick + 1 >= kLeastHeld) watch_contact(c, codes[c]);
       if (run.reported) {
         log_.report(FaultKind::kStuckChannel, channel_of(c), log_.seconds(last_.tick),
                     log_.seconds(last_.tick - run.first_tick + 1), 0);
       }
-      run = {.code = codes[c], .first_tick = sample.tick, .lowest = sum, .highest = sum};
+      run = {.code = codes[c],
+             .first_tick = sample.tick,
+             .before = run.code,
+             .lowest = sum,
+             .highest = sum};
       continue;
     }
     run.lowest = std::min(run.lowest, sum);
@@ -238,6 +249,25 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
     log_.report(FaultKind::kStuckChannel, channel_of(c), log_.seconds(run.first_tick),
                 log_.seconds(stuck_ticks_));
   }
+}
+
+// A loose contact: the channel leaps to a code, holds it for some samples and leaps back, while
+// the others move, and time and again it is the same code. No motion does that.
+void Guard::watch_contact(std::size_t channel, std::int64_t code) noexcept {
+  const Run& run = runs_[channel];
+  const std::int64_t held = last_.tick - run.first_tick + 1;
+  if (run.reported || run.highest - run.lowest <= kStepsMoved) return;
+  const double resolution = std::ldexp(1.0, codes_[channel].dead_bits());
+  const double leap = (held < kLongHeld ? kLeap : kLeapOfLong) * spikes_[channel].scale();
+  const std::int64_t least = std::min(std::abs(run.code - run.before), std::abs(code - run.code));
+  if (static_cast<double>(least) < std::max(leap, kLeapCodes * resolution)) return;
+  Contacts& contacts = contacts_[channel];
+  if (run.code != std::exchange(contacts.code, run.code)) contacts.count = 0.0;
+  contacts.count += 1.0;
+  log_.spoil(FaultKind::kStuckChannel, channel_of(channel), run.first_tick, last_.tick);
+  if (contacts.count < kFewContacts) return;
+  log_.report(FaultKind::kStuckChannel, channel_of(channel), log_.seconds(run.first_tick),
+              log_.seconds(held));
 }
 
 // Two sensors never agree in every code while they move: one of them is the other's copy.
@@ -339,6 +369,7 @@ void Guard::close_block(std::int64_t tick) noexcept {
     judge_spikes(c);
     spectral_.set_impulse_power(c, impulses_[c].take());
   }
+  for (Contacts& contacts : contacts_) contacts.count *= kTallyKept;
   judge_twins();
   repeats_.forget();
   const bool whole = tick - block_start_ >= block_ticks_;

@@ -78,6 +78,7 @@ class Guard {
   struct Run {
     std::int64_t code{0};
     std::int64_t first_tick{0};
+    std::int64_t before{0};              // the code that it followed
     std::int64_t lowest{0}, highest{0};  // of the other channels during the run
     bool reported{false};
   };
@@ -100,6 +101,11 @@ class Guard {
     bool waits{false};
   };
 
+  /// How often a loose contact opened, all with this code; what is long ago counts less.
+  struct Contacts {
+    std::int64_t code{0};
+    double count{0.0};
+  };
   /// Samples of a block in which a pair of channels moved, and of these: both alike.
   struct Twins {
     std::int64_t moved{0};
@@ -110,6 +116,7 @@ class Guard {
   void restart() noexcept;
   void watch_codes(const Sample& sample, const Codes& codes) noexcept;
   void watch_runs(const Sample& sample, const Codes& codes) noexcept;
+  void watch_contact(std::size_t channel, std::int64_t code) noexcept;
   void take_jump(std::size_t channel, const LevelJump& jump, std::int64_t tick) noexcept;
   void settle_jumps(std::int64_t tick) noexcept;
   void report_jump(std::size_t channel) noexcept;
@@ -147,6 +154,7 @@ class Guard {
   SpectralGuard spectral_;
   WheelsetWatch wheelsets_;
   std::array<Run, kChannels> runs_{};
+  std::array<Contacts, kChannels> contacts_{};
   std::array<Twins, kChannels> twins_{};  // channel c and the one after it
   Codes last_codes_{};
   std::array<std::uint64_t, kChannels> saturated_{};

@@ -94,7 +94,7 @@ void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
       next_ = Test::kTiming;
       return;
     case Test::kTiming:
-      timing_.add_block(survey_.figures(), usable_);
+      if (timing_.add_block(survey_.figures(), usable_, inputs)) survey_.forget_lag();
       timing_.judge(log, inputs);
       next_ = Test::kGain;
       return;

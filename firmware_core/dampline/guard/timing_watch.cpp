@@ -23,6 +23,8 @@ constexpr double kWholeDelay = 0.03;    // samples: a step this near a whole num
 constexpr double kWholeLag = 0.05;
 constexpr double kReachS = 20.0;          // from where a step is sought
 constexpr std::size_t kEnoughBlocks = 7;  // blocks
+constexpr double kOtherSpeed = 0.2;       // of the delay: no channel is as far out of step
+constexpr double kLasts = 0.5;            // of its range: a drift goes one way
 constexpr double kSameChangeS = 60.0;     // changes of speed this close are one
 
 double middle_of(double a, double b, double c) noexcept {
@@ -35,6 +37,7 @@ void TimingWatch::restart() noexcept {
   delay_.clear();
   for (BlockSeries& lag : lag_) lag.clear();
   segment_count_ = 0;
+  first_delay_s_ = 0.0;
 }
 
 void TimingWatch::add_segment(std::int64_t tick, double delay_s) noexcept {
@@ -46,11 +49,28 @@ void TimingWatch::discard_segments(std::int64_t tick) noexcept {
   while (left-- > 0 && segments_[(segment_count_ - 1) % kSegments].tick >= tick) --segment_count_;
 }
 
-void TimingWatch::add_block(const BlockFigures& block, bool has_delay) noexcept {
+bool TimingWatch::is_other_speed(double delay_s) const noexcept {
+  return first_delay_s_ != 0.0 &&
+         std::abs(delay_s - first_delay_s_) > kOtherSpeed * std::abs(first_delay_s_);
+}
+
+// The frame's lag is another at another speed, where friction holds it for another share of the
+// time; nor is it known which speed it is while the delay is not known any more.
+bool TimingWatch::add_block(const BlockFigures& block, bool has_delay,
+                            GuardInputs& inputs) noexcept {
   const std::int64_t middle = (block.first_tick + block.last_tick) / 2;
-  if (has_delay) delay_.add(block.delay_s, middle);
-  if (!block.has_lag) return;
+  const bool other_speed = has_delay && is_other_speed(block.delay_s);
+  if (other_speed) {
+    restart();
+    count_speed_change(middle, inputs);
+  }
+  if (has_delay) {
+    if (first_delay_s_ == 0.0) first_delay_s_ = block.delay_s;
+    delay_.add(block.delay_s, middle);
+  }
+  if (other_speed || !block.has_lag || has_delay != (first_delay_s_ != 0.0)) return other_speed;
   for (std::size_t i = 0; i < lag_.size(); ++i) lag_[i].add(block.lag_s[i], middle);
+  return other_speed;
 }
 
 double TimingWatch::delay_s() const noexcept {
@@ -146,10 +166,12 @@ bool TimingWatch::judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept {
   const bool has_lag = lag_[0].size() + 2 >= delay_.size();
   const Cause cause =
       has_lag ? cause_of(moved_s, lag_s, !at_once || jumped(tick)) : Cause::kUnknown;
-  if (cause == Cause::kSpeed ||
+  const bool passed = !at_once && std::abs(moved_s) < kLasts * delay_.range();
+  if (cause == Cause::kSpeed || passed ||
       (cause == Cause::kUnknown &&
        !sudden(tick, std::max(std::abs(change_s), std::abs(step.size))))) {
-    take_speed_change(tick, inputs);
+    count_speed_change(tick, inputs);
+    delay_.drop(delay_.size() - BlockSeries::kSide);  // what was before it no longer compares
     return true;
   }
   const FaultChannel channel = cause == Cause::kWheelset1   ? FaultChannel::kWheelset1
@@ -167,14 +189,12 @@ bool TimingWatch::judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept {
   return true;
 }
 
-// What was before it no longer compares.
-void TimingWatch::take_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept {
+void TimingWatch::count_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept {
   if (last_speed_change_ < 0 ||
       static_cast<double>(tick - last_speed_change_) > kSameChangeS * rate_hz_) {
     ++inputs.speed_changes;
   }
   last_speed_change_ = tick;
-  delay_.drop(delay_.size() - BlockSeries::kSide);
 }
 
 void TimingWatch::judge_frame(FaultLog& log) noexcept {

@@ -21,7 +21,8 @@ class TimingWatch {
 
   /// A segment's delay between the wheelsets, to tell sudden from gradual.
   void add_segment(std::int64_t tick, double delay_s) noexcept;
-  void add_block(const BlockFigures& block, bool has_delay) noexcept;
+  /// True where the car has another speed than in the blocks before, and they are forgotten.
+  bool add_block(const BlockFigures& block, bool has_delay, GuardInputs& inputs) noexcept;
   /// Looks for changes; reports each once, a drift again and again with its newest size.
   void judge(FaultLog& log, GuardInputs& inputs) noexcept;
   /// A segment's delays between the wheelsets were no good from this tick on.
@@ -42,9 +43,10 @@ class TimingWatch {
   enum class Cause : std::uint8_t { kUnknown, kSpeed, kWheelset1, kWheelset2 };
   [[nodiscard]] static Cause cause_of(double delay_s, const std::array<double, 3>& lag_s,
                                       bool may_stay) noexcept;
+  [[nodiscard]] bool is_other_speed(double delay_s) const noexcept;
   [[nodiscard]] bool jumped(std::int64_t tick) const noexcept;
   [[nodiscard]] bool judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept;
-  void take_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept;
+  void count_speed_change(std::int64_t tick, GuardInputs& inputs) noexcept;
   void judge_frame(FaultLog& log) noexcept;
   void forget_before(std::int64_t tick) noexcept;
   [[nodiscard]] bool sudden(std::int64_t tick, double size_s) const noexcept;
@@ -55,6 +57,7 @@ class TimingWatch {
   double rate_hz_;
   BlockSeries delay_;
   std::array<BlockSeries, 3> lag_{};  // of the frame, behind mean, wheelset 1, wheelset 2
+  double first_delay_s_{0.0};         // of the blocks that are compared; 0: not known yet
   std::array<Segment, kSegments> segments_{};
   std::size_t segment_count_{0};  // since the restart; the ring holds the newest
   std::int64_t last_speed_change_{-1};
