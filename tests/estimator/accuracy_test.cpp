@@ -48,5 +48,23 @@ TEST(Estimator, TellsFrictionLevelsApart) {
   EXPECT_LE(std::abs(bench::run_case(more, 5, {60.0}).at[0].coulomb), 0.01);
 }
 
+/// Little motion, so that the truck sticks for a third of the time: one width of the law would have
+/// the level 3 % high.
+TEST(Estimator, KnowsTheLevelWhereTheTruckSticks) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    bench::AccuracyCase c = bench::standard_cases()[0];
+    c.simulation.speed.speed_mps = 50.0 / 3.6;
+    c.simulation.track.short_wave_mps2 = 0.5;
+    const bench::Errors e = bench::run_case(c, seed, {200.0}).at[0];
+    ASSERT_TRUE(e.snapshot.valid);
+    EXPECT_GT(e.snapshot.stick_share, 0.25);
+    EXPECT_TRUE(e.snapshot.std_is_lower_bound);
+    EXPECT_LE(std::abs(e.coulomb), 0.025);
+    EXPECT_LE(std::abs(e.coulomb_sigmas), 2.0);
+    EXPECT_LE(std::abs(e.stiffness_sigmas), 2.0);
+    EXPECT_LE(e.snapshot.coulomb_n.std, 0.025 * e.snapshot.coulomb_n.value);
+  }
+}
+
 }  // namespace
 }  // namespace dampline

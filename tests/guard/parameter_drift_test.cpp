@@ -32,6 +32,18 @@ sim::SimulationConfig laden(std::uint64_t seed) {
   return sim::reference_run(sim::Load::kLaden, 80.0, seed);
 }
 
+// At half the speed the truck sticks more, and the friction of the entries seems to be more.
+TEST(ParameterDrift, TakesAnotherSpeedForARide) {
+  for (const double speed_kmh : {40.0, 50.0, 100.0}) {
+    sim::SimulationConfig config = laden(31);
+    config.speed.change_time_s = 100.0;
+    config.speed.changed_speed_mps = speed_kmh / 3.6;
+    const ParameterDrift drift = judge(config);
+    EXPECT_TRUE(drift.judged);
+    EXPECT_FALSE(drift.found) << speed_kmh << " km/h: " << drift.change.value;
+  }
+}
+
 TEST(ParameterDrift, NamesAStepOfFrictionItsTimeAndSize) {
   sim::SimulationConfig config = laden(31);
   config.truck.drift = {.friction_factor = 1.10, .start_s = 120.0};

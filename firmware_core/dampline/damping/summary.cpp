@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/damping/summary.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -24,11 +25,24 @@ constexpr double kWidthShare = 0.03;  // at the width
 constexpr ScaleMask kAllScales{true, true, true, true, true};
 constexpr ScaleMask kLongScales{true, true, true, true, false};
 constexpr double kValidStickShare = 0.25;
+// The bent law's level counts from the one share on, alone from the other on.
+constexpr double kBendsFrom = 0.15;
+constexpr double kBendsWholly = 0.25;
+// What sticking leaves of bias, of the value, for each unit of the share beyond.
+constexpr double kCoulombSticks = 0.05;
+constexpr double kCoulombSticksFrom = 0.12;
+constexpr double kCurveSticksNear = 2.0;  // so many times more where a node is near the width
+constexpr double kStiffnessSticks = 0.32;
+constexpr double kStiffnessSticksFrom = 0.18;
 constexpr double kValidWidthMps = 3.0e-3;
 constexpr std::size_t kFolds = 5;
 constexpr std::size_t kFewestEntries = 4;  // below, a deviation says nothing
 
 double floored(double std, double floor) noexcept { return std::sqrt(std * std + floor * floor); }
+
+double with_floors(const Estimate& e, double share, double of_sticking) noexcept {
+  return floored(floored(e.std, share * e.value), std::max(of_sticking, 0.0) * e.value);
+}
 
 double stick_share(const VelocityCounts& v) noexcept {
   return v.moving > 0 ? static_cast<double>(v.sticking) / static_cast<double>(v.moving) : 0.0;
@@ -75,22 +89,45 @@ struct LawResult {
     out.ok = out.law.fit.ok && long_law.fit.ok;
     if (!out.ok) return out;
     const auto& theta = out.law.fit.theta;
-    const Deviations std = deviations(c, out.law);
+    const Deviations std = deviations<Model::kUnknowns>(c, out.law.fit, out.law.map);
     const double coulomb = theta[Model::kCoulomb];
-    const double stiffness = long_law.fit.theta[Model::kStiffness];
-    out.coulomb = {coulomb, floored(std[Model::kCoulomb], kCoulombFloor * coulomb)};
-    out.stiffness = {stiffness, floored(deviations(c, long_law)[Model::kStiffness],
-                                        kStiffnessFloor * stiffness)};
+    const double share = stick_share(c.header.velocity);
+    out.coulomb = unbiased(c, out.law.width_index, {coulomb, std[Model::kCoulomb]}, share);
+    out.coulomb.std =
+        with_floors(out.coulomb, kCoulombFloor, kCoulombSticks * (share - kCoulombSticksFrom));
+    out.stiffness = {
+        long_law.fit.theta[Model::kStiffness],
+        deviations<Model::kUnknowns>(c, long_law.fit, long_law.map)[Model::kStiffness]};
+    out.stiffness.std = with_floors(out.stiffness, kStiffnessFloor,
+                                    kStiffnessSticks * (share - kStiffnessSticksFrom));
     out.width = {out.law.width_mps(), std[Model::kWidthChange] / coulomb * out.law.span_mps()};
     if constexpr (Viscous) out.viscous = {theta[Model::kViscous], std[Model::kViscous]};
     return out;
   }
 
  private:
-  template <class Entries>
-  static Deviations deviations(const Context<Entries>& c, const Profile& law) noexcept {
-    const auto covariance = score_covariance<Model::kUnknowns>(law.fit, c.entries, law.map);
+  template <int Q, class Entries>
+  static typename WeightedFit<Q>::Vector deviations(const Context<Entries>& c,
+                                                    const WeightedFit<Q>& fit,
+                                                    const ColumnMap<Q>& map) noexcept {
+    const auto covariance = score_covariance<Q>(fit, c.entries, map);
     return c.blocks_factor * covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+
+  /// The level where the truck sticks: more and more that of the bent law.
+  template <class Entries>
+  static Estimate unbiased(const Context<Entries>& c, std::size_t width_index,
+                           const Estimate& level, double share) noexcept {
+    using Bent = LawModel<Viscous, true>;
+    const double bent_share =
+        std::clamp((share - kBendsFrom) / (kBendsWholly - kBendsFrom), 0.0, 1.0);
+    if (bent_share == 0.0 || !Bent::can_bend(width_index)) return level;
+    const auto map = Bent::free_width(width_index);
+    const auto fit = weighted_fit<Bent::kUnknowns>(c.total, map, kAllScales);
+    if (!fit.ok) return level;
+    const double std = deviations<Bent::kUnknowns>(c, fit, map)[Bent::kCoulomb];
+    return {std::lerp(level.value, fit.theta[Bent::kCoulomb], bent_share),
+            std::lerp(level.std, std, bent_share)};
   }
 };
 
@@ -129,7 +166,10 @@ void fill_curve(const Context<Entries>& c, const LawProfile<true>& law, Snapshot
   for (std::size_t i = 0; i < kCurveSegments; ++i) {
     const double v_mps = c.header.curve_nodes_mps[i];
     const Estimate f = curve.force(v_mps, law.width_mps(), c.header.curve_nodes_mps);
-    const double floor = floored(kCurveFloor, kWidthShare * law.width_mps() / v_mps);
+    const double near = law.width_mps() / v_mps;
+    const double sticks = (1.0 + kCurveSticksNear * near) * kCoulombSticks *
+                          std::max(out.stick_share - kCoulombSticksFrom, 0.0);
+    const double floor = floored(floored(kCurveFloor, kWidthShare * near), sticks);
     out.curve[i] = {.velocity_mps = v_mps,
                     .force_n = c.mass_kg * f.value,
                     .std_n = c.mass_kg * floored(c.blocks_factor * f.std, floor * f.value),

@@ -8,15 +8,19 @@
 namespace dampline {
 
 /// The column map of a friction law of width kLawWidthMps[i], the linear spring, and, with
-/// Viscous, the viscous part; the last unknown is the change with the width, so that the width is
-/// continuous and its uncertainty is part of every other.
-template <bool Viscous>
+/// Viscous, the viscous part; then the change with the width, so that the width is continuous and
+/// its uncertainty is part of every other. Where the truck sticks for much of the time, the mean
+/// force at small velocities, which are errors of a velocity that is 0, is none that a width alone
+/// describes: Bent has the second difference over the widths as well. Far from 0 it vanishes, so
+/// that the level stays what the law tends to.
+template <bool Viscous, bool Bent = false>
 struct LawModel {
-  static constexpr int kUnknowns = Viscous ? 4 : 3;
+  static constexpr int kUnknowns = (Viscous ? 4 : 3) + (Bent ? 1 : 0);
   static constexpr int kCoulomb = 0;
   static constexpr int kStiffness = 1;
   static constexpr int kViscous = 2;
-  static constexpr int kWidthChange = kUnknowns - 1;
+  static constexpr int kWidthChange = kUnknowns - (Bent ? 2 : 1);
+  static constexpr int kBend = kUnknowns - 1;  // with Bent
 
   static ColumnMap<kUnknowns - 1> fixed_width(std::size_t i) noexcept {
     ColumnMap<kUnknowns - 1> map = ColumnMap<kUnknowns - 1>::Zero();
@@ -34,10 +38,17 @@ struct LawModel {
     if (Viscous) map(kViscousColumn, kViscous) = 1.0;
     map(static_cast<int>(above(i)), kWidthChange) = 1.0;
     map(static_cast<int>(below(i)), kWidthChange) = -1.0;
+    if constexpr (Bent) {
+      map(static_cast<int>(above(i)), kBend) = 1.0;
+      map(static_cast<int>(i), kBend) = -2.0;
+      map(static_cast<int>(below(i)), kBend) = 1.0;
+    }
     map(kTargetColumn, kUnknowns) = 1.0;
     return map;
   }
 
+  /// The second difference needs a width on either side.
+  static bool can_bend(std::size_t i) noexcept { return below(i) < i && i < above(i); }
   static std::size_t below(std::size_t i) noexcept { return i > 0 ? i - 1 : i; }
   static std::size_t above(std::size_t i) noexcept { return i + 1 < kLawWidths ? i + 1 : i; }
 };

@@ -75,6 +75,10 @@ class CodeWatch {
   [[nodiscard]] int dead_bits() const noexcept {
     return std::min(std::countr_zero(moved_bits_), kMostDead);
   }
+  /// No code of this block lies beyond it.
+  [[nodiscard]] bool is_extreme(std::int64_t code) const noexcept {
+    return code >= top_.extreme() || -code >= bottom_.extreme();
+  }
   /// Judges the block and begins the next one.
   [[nodiscard]] CodeVerdict close() noexcept;
 

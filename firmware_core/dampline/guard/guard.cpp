@@ -252,11 +252,13 @@ void Guard::watch_runs(const Sample& sample, const Codes& codes) noexcept {
 }
 
 // A loose contact: the channel leaps to a code, holds it for some samples and leaps back, while
-// the others move, and time and again it is the same code. No motion does that.
+// the others move, and time and again it is the same code. No motion does that; what clips holds a
+// code at an end of its range.
 void Guard::watch_contact(std::size_t channel, std::int64_t code) noexcept {
   const Run& run = runs_[channel];
   const std::int64_t held = last_.tick - run.first_tick + 1;
-  if (run.reported || run.highest - run.lowest <= kStepsMoved) return;
+  const bool others_moved = run.highest - run.lowest > kStepsMoved;
+  if (run.reported || !others_moved || codes_[channel].is_extreme(run.code)) return;
   const double resolution = std::ldexp(1.0, codes_[channel].dead_bits());
   const double leap = (held < kLongHeld ? kLeap : kLeapOfLong) * spikes_[channel].scale();
   const std::int64_t least = std::min(std::abs(run.code - run.before), std::abs(code - run.code));

@@ -23,8 +23,8 @@ constexpr double kWholeDelay = 0.03;    // samples: a step this near a whole num
 constexpr double kWholeLag = 0.05;
 constexpr double kReachS = 20.0;          // from where a step is sought
 constexpr std::size_t kEnoughBlocks = 7;  // blocks
-constexpr double kOtherSpeed = 0.2;       // of the delay: no channel is as far out of step
-constexpr double kLasts = 0.5;            // of its range: a drift goes one way
+constexpr double kOtherSpeed = 0.2;       // of the delay before: no channel is as far out of step
+constexpr double kLasts = 0.25;           // of its range: a drift goes one way
 constexpr double kSameChangeS = 60.0;     // changes of speed this close are one
 
 double middle_of(double a, double b, double c) noexcept {
@@ -37,7 +37,7 @@ void TimingWatch::restart() noexcept {
   delay_.clear();
   for (BlockSeries& lag : lag_) lag.clear();
   segment_count_ = 0;
-  first_delay_s_ = 0.0;
+  newest_delay_s_ = 0.0;
 }
 
 void TimingWatch::add_segment(std::int64_t tick, double delay_s) noexcept {
@@ -50,8 +50,8 @@ void TimingWatch::discard_segments(std::int64_t tick) noexcept {
 }
 
 bool TimingWatch::is_other_speed(double delay_s) const noexcept {
-  return first_delay_s_ != 0.0 &&
-         std::abs(delay_s - first_delay_s_) > kOtherSpeed * std::abs(first_delay_s_);
+  return newest_delay_s_ != 0.0 &&
+         std::abs(delay_s - newest_delay_s_) > kOtherSpeed * std::abs(newest_delay_s_);
 }
 
 // The frame's lag is another at another speed, where friction holds it for another share of the
@@ -65,10 +65,10 @@ bool TimingWatch::add_block(const BlockFigures& block, bool has_delay,
     count_speed_change(middle, inputs);
   }
   if (has_delay) {
-    if (first_delay_s_ == 0.0) first_delay_s_ = block.delay_s;
+    newest_delay_s_ = block.delay_s;
     delay_.add(block.delay_s, middle);
   }
-  if (other_speed || !block.has_lag || has_delay != (first_delay_s_ != 0.0)) return other_speed;
+  if (other_speed || !block.has_lag || has_delay != (newest_delay_s_ != 0.0)) return other_speed;
   for (std::size_t i = 0; i < lag_.size(); ++i) lag_[i].add(block.lag_s[i], middle);
   return other_speed;
 }

@@ -57,7 +57,7 @@ class TimingWatch {
   double rate_hz_;
   BlockSeries delay_;
   std::array<BlockSeries, 3> lag_{};  // of the frame, behind mean, wheelset 1, wheelset 2
-  double first_delay_s_{0.0};         // of the blocks that are compared; 0: not known yet
+  double newest_delay_s_{0.0};        // of the blocks that are compared; 0: not known yet
   std::array<Segment, kSegments> segments_{};
   std::size_t segment_count_{0};  // since the restart; the ring holds the newest
   std::int64_t last_speed_change_{-1};
