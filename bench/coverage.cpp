@@ -316,13 +316,14 @@ class Table {
     Row& row = rows_[key];
     ++row.records;
     const bool clean = key.first == "clean";
-    const bool right = clean ? e.conclusion == effect::Conclusion::kComplete
+    const bool named = clean ? e.conclusion == effect::Conclusion::kComplete
                              : e.step_count == 1 && std::string{effect_of(key.first)} ==
                                                         effect::name_of(e.step[0].chosen.effect);
-    if (!right) {
-      std::string names;
+    if (!named || found.other) {  // no truck here is beside another one
+      std::string names{found.other ? "other_truck" : ""};
       for (std::size_t i = 0; i < e.step_count; ++i)
-        names += fmt::format("{}{}", i == 0 ? "" : " + ", effect::name_of(e.step[i].chosen.effect));
+        names += fmt::format("{}{}", names.empty() ? "" : " + ",
+                             effect::name_of(e.step[i].chosen.effect));
       ++row.instead[names.empty() ? effect::name_of(e.conclusion) : names];
       return;
     }

@@ -33,15 +33,26 @@ struct DiagnosedRecord {
   effect::Explanation explanation;
   bool withheld{false};
   bool drifts{false};
-  bool is_untouched{false};  ///< a stop that the motion never reaches
+  bool has_other_truck{false};  ///< no record here is of a truck beside another one
+  bool is_untouched{false};     ///< a stop that the motion never reaches
   std::string faults;
   std::vector<Planted> planted;
   double coulomb_n{0.0};
   double stiffness_npm{0.0};
   std::optional<effect::Explanation> by_true_model;
   [[nodiscard]] bool names(std::size_t step, const std::string& effect) const {
-    return step < explanation.step_count &&
+    return !has_other_truck && step < explanation.step_count &&
            effect::name_of(explanation.step[step].chosen.effect) == effect;
+  }
+  /// Effects that are said to be in it.
+  [[nodiscard]] std::size_t steps() const {
+    return explanation.step_count + (has_other_truck ? 1 : 0);
+  }
+  /// The first of them, or "none".
+  [[nodiscard]] std::string first_name() const {
+    if (has_other_truck) return "other_truck";
+    return explanation.step_count == 0 ? "none"
+                                       : effect::name_of(explanation.step[0].chosen.effect);
   }
 };
 
@@ -135,6 +146,7 @@ inline DiagnosedRecord diagnose(const Condition& condition, std::vector<Planted>
   out.explanation = found.explanation;
   out.withheld = found.withheld;
   out.drifts = found.drifts;
+  out.has_other_truck = found.other != nullptr;
   for (const app::FaultFinding& f : found.identified.faults.list)
     out.faults += fmt::format(" {} {} at {:.0f} s", f.name, f.channel, f.time_s);
   out.planted = std::move(planted);
@@ -184,11 +196,10 @@ struct Tally {
 
   void add(const std::string& kind, const Condition& condition, const DiagnosedRecord& record) {
     const effect::Explanation& e = record.explanation;
-    const std::string verdict =
-        e.step_count == 0 ? "none" : effect::name_of(e.step[0].chosen.effect);
+    const std::string verdict = record.first_name();
     ++confusion[kind][verdict];
     if (record.planted.empty()) {
-      alarm.add(e.step_count > 0);
+      alarm.add(record.steps() > 0);
       floors.push_back(e.floor_nmse / e.base.held_out_nmse);
       floor.add(std::abs(floors.back() - 1.0) <= floor_within);
       return;
@@ -210,8 +221,8 @@ struct Tally {
       ratios.push_back(effect::floor_ratio(e));
       complete.add(ratios.back() <= effect::kIncompleteAbove);
     }
-    wrong.add(e.step_count > 0 && !named);
-    extra.add(e.step_count > 1);
+    wrong.add(record.steps() > 0 && !named);
+    extra.add(record.steps() > 1);
     if (named) add_sizes(condition, record);
     if (named && record.by_true_model) {
       over_true.push_back(e.final.held_out_nmse / record.by_true_model->final.held_out_nmse);
@@ -308,13 +319,13 @@ void pairs(std::uint64_t seed, double strength) {
       const auto has = [&](const std::string& effect) {
         return found.names(0, effect) || found.names(1, effect) || found.names(2, effect);
       };
-      const std::size_t steps = found.explanation.step_count;
+      const std::size_t steps = found.steps();
       const std::size_t wanted = one.effect == two.effect ? 1 : 2;
       first.add(found.names(0, one.effect) || found.names(0, two.effect));
       both.add(has(one.effect) && has(two.effect));
       exact.add(has(one.effect) && has(two.effect) && steps == wanted);
-      std::string names;
-      for (std::size_t i = 0; i < steps; ++i)
+      std::string names{found.has_other_truck ? " other_truck" : ""};
+      for (std::size_t i = 0; i < found.explanation.step_count; ++i)
         names += fmt::format(" {}", effect::name_of(found.explanation.step[i].chosen.effect));
       rows += fmt::format("| {} + {} |{}{} |\n", kinds[a], kinds[b], names,
                           found.withheld ? " (withheld:" + found.faults + ")" : "");

@@ -25,6 +25,7 @@ LiveExplainer::LiveExplainer(Config config, ExplainRun& run, Pace pace)
       pace_{pace},
       every_ticks_{std::llround(kEveryS * rate_hz())},
       floor_{run.config().estimator},
+      other_{run.config()},
       copy_{std::make_unique<effect::StoreCopy>()},
       statistics_{std::make_unique<Statistics>()},
       explainer_{std::make_unique<effect::Explainer>()} {
@@ -88,21 +89,6 @@ void LiveExplainer::run() {
   floor_.follow();
 }
 
-bool LiveExplainer::judge(const effect::GramStore& sums, const effect::ImpulseMeter& impulses,
-                          const effect::Grids& grids, Explained& out) {
-  while (true) {
-    effect::judge(sums, impulses, grids, explainer_config(config_, out), out.circumstances,
-                  *explainer_, out);
-    if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
-    floor_.hold_against(sums, guarded_, *explainer_, out);
-    const effect::Effect needless = needless_effect(out.explanation);
-    if (needless == effect::Effect::kUnknown) break;
-    out.needless[static_cast<std::size_t>(needless)] = true;
-  }
-  effect::name_nothing_impossible(out.explanation);
-  return true;
-}
-
 void LiveExplainer::judge() {
   floor_.follow();                  // what the copy is made of has come by now
   constexpr double kAskAnew = 2.0;  // when there are so many times the rows
@@ -120,16 +106,19 @@ void LiveExplainer::judge() {
     needless_rows_ = copy_->store().rows();
   }
   out.needless = needless_;
-  if (!judge(copy_->store(), impulses_, grids_, out)) return;
+  if (!judge_live({copy_->store(), impulses_, grids_}, {config_, guarded_}, floor_, *explainer_,
+                  out))
+    return;
   needless_ = out.needless;
+  const double of_s = other_.look({config_, guarded_}, floor_, copied_s_, *explainer_, out);
   const std::lock_guard<std::mutex> lock{mutex_};
   newest_ = std::move(out);
-  newest_s_ = copied_s_;
+  newest_s_ = of_s;
 }
 
 namespace {
 
-/// Judged as of a file; the result itself keeps the law that it identified.
+/// Concluded as of a file; the result itself keeps the law that it identified.
 void add(Explained found, RunResult& result) {
   RunResult final = result;
   final.faults = std::move(found.identified.faults);
@@ -164,7 +153,12 @@ void LiveExplainer::conclude(RunResult& result) {
   floor_.follow();
   floor_.forget();
   const effect::Diagnosis& sums = run_.core().effects();
-  if (judge(sums.store(), sums.impulses(), sums.grids(), found)) add(std::move(found), result);
+  const LiveKnown known{config_, guarded_};
+  if (!judge_live({sums.store(), sums.impulses(), sums.grids()}, known, floor_, *explainer_, found))
+    return;
+  other_.forget();
+  other_.look(known, floor_, run_.time_s(), *explainer_, found);
+  add(std::move(found), result);
 }
 
 }  // namespace dampline::app

@@ -11,6 +11,7 @@
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/identify/truck_run.hpp"
 #include "app/live/live_floor.hpp"
+#include "app/live/live_other.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/effect/judgement.hpp"
 
@@ -50,9 +51,6 @@ class LiveExplainer {
   void take_sums(std::int64_t tick) noexcept;
   void hand_on(const Sample& sample) noexcept;
   void judge();
-  /// With the floor, and without what that shows to be needless. False: there is too little yet.
-  [[nodiscard]] bool judge(const effect::GramStore& sums, const effect::ImpulseMeter& impulses,
-                           const effect::Grids& grids, Explained& out);
   [[nodiscard]] double rate_hz() const noexcept { return run_.config().estimator.sample_rate_hz; }
   void run();
 
@@ -62,6 +60,7 @@ class LiveExplainer {
   std::int64_t every_ticks_;
   bool still_{false};
   LiveFloor floor_;
+  LiveOther other_;
   std::unique_ptr<effect::StoreCopy> copy_;
   std::unique_ptr<Statistics> statistics_;
   effect::ImpulseMeter impulses_;

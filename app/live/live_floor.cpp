@@ -42,11 +42,19 @@ LiveFloor::LiveFloor(const EstimatorConfig& core)
 }
 
 void LiveFloor::follow() {
-  for (Sample sample; ring_.pop(sample);) {
-    noise_.take(sample);
-    keep(sample);
-    surrogates_->take(sample);
-  }
+  for (Sample sample; ring_.pop(sample);) follow(sample);
+}
+
+void LiveFloor::follow(const Sample& sample) {
+  noise_.take(sample);
+  keep(sample);
+  surrogates_->take(sample);
+}
+
+std::vector<Sample> LiveFloor::kept() const {
+  std::vector<Sample> out{kept_};
+  std::rotate(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(oldest_), out.end());
+  return out;
 }
 
 void LiveFloor::keep(const Sample& sample) {

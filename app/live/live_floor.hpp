@@ -29,6 +29,10 @@ class LiveFloor {
   // The explainer's side.
   /// Takes what came.
   void follow();
+  /// One sample that did not come that way.
+  void follow(const Sample& sample);
+  /// The motion that is kept, the oldest first; a copy.
+  [[nodiscard]] std::vector<Sample> kept() const;
   /// Floor and conclusion of an explanation of these sums.
   void hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
                     effect::Explainer& explainer, Explained& out);

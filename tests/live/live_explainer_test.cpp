@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +21,7 @@
 #include "app/diagnosis/truck/verdict.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/simulation.hpp"
+#include "tests/explain/other_truck.hpp"
 
 namespace dampline::app {
 namespace {
@@ -36,13 +39,45 @@ json newest(const LiveExplainer& explainer, ExplainRun& run, const Config& setti
   return out;
 }
 
+using Source = std::function<Sample()>;  // one sample after the other
+
 struct Ride {
   const char* effect;  ///< as --effect takes it; empty: none
   const char* named;   ///< the first step; empty: none
   const char* trust;
   int length_s;
   std::function<void(Sample&)> spoil{};
+  Source (*source)() = nullptr;  ///< null: the program's own simulation
 };
+
+Source simulated(const Ride& ride, const Config& settings) {
+  sim::SimulationConfig config = sim::reference_run(sim::Load::kLaden, 80.0, 23);
+  EXPECT_EQ(config.truck.moving_mass_kg, settings.car.moving_mass_kg);
+  if (*ride.effect != '\0') {
+    EXPECT_FALSE(sim::add_effect_text(config, ride.effect));
+  }
+  auto simulation = std::make_shared<sim::Simulation>(config);
+  return [simulation] { return sim::to_sample(simulation->next()); };
+}
+
+/// By the other simulation; it is 400 s long.
+Source beside_another_truck() {
+  constexpr double kLengthS = 400.0;
+  auto text = std::make_shared<std::istringstream>(
+      test::record_of(test::coupled({5600.0, 0.43}, kLengthS), 1, kLengthS));
+  std::string header;
+  std::getline(*text, header);
+  return [text, tick = std::int64_t{0}]() mutable {
+    Sample out;
+    char comma = ',';
+    double time_s = 0.0;
+    *text >> time_s;
+    for (double& a : out.accel_mps2) *text >> comma >> a;
+    out.tick = tick++;
+    out.time_ns = std::llround(1e9 * time_s);
+    return out;
+  };
+}
 
 /// What `dampline explain` says of a file of these samples.
 json explanation_of(const Config& settings, const std::vector<Sample>& samples) {
@@ -80,20 +115,16 @@ class LiveExplaining : public testing::TestWithParam<Ride> {};
 /// what its end says; the floor, too, although only the newest minutes are kept for it.
 TEST_P(LiveExplaining, SaysAtAnyTimeWhatAFileOfTheSameFramesSays) {
   const Ride& ride = GetParam();
-  sim::SimulationConfig config = sim::reference_run(sim::Load::kLaden, 80.0, 23);
-  if (*ride.effect != '\0') {
-    ASSERT_FALSE(sim::add_effect_text(config, ride.effect));
-  }
-  sim::Simulation simulation{config};
   Config settings;
-  settings.car.moving_mass_kg = config.truck.moving_mass_kg;
+  settings.car.moving_mass_kg = test::kMassKg;
+  Source next = ride.source != nullptr ? ride.source() : simulated(ride, settings);
   ExplainRun run{settings};
   LiveExplainer explainer{settings, run, LiveExplainer::Pace::kWaits};
   EXPECT_TRUE(newest(explainer, run, settings).is_discarded());
   std::vector<Sample> samples;
   const auto ride_on = [&](int seconds) {
     for (int n = 0; n < seconds * 300; ++n) {
-      samples.push_back(sim::to_sample(simulation.next()));
+      samples.push_back(next());
       if (ride.spoil) ride.spoil(samples.back());
       run.take(samples.back());
     }
@@ -130,6 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Ride{"", "", "trusted", 300},
                     Ride{"viscous:coefficient_nspm=120000", "viscous", "trusted", 120},
                     Ride{"time_drift", "time_drift", "trusted", 300},
+                    Ride{"", "other_truck", "trusted", 120, {}, beside_another_truck},
                     Ride{"", "", "data_faulty", 120,
                          [](Sample& s) { s.accel_mps2[2] = s.accel_mps2[1]; }}),
     [](const auto& ride) {

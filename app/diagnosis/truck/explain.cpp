@@ -69,30 +69,37 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
   }
 }
 
-constexpr double kGainOfOther = 0.1;  // of the error that is left
-
-/// The truck under the other end of the body, where what is left tells of it: the record is
-/// explained anew with what its frame does, and stays so where less is left then.
+/// The truck under the other end of the body: the record is explained anew with what its frame
+/// does, and stays so where less is left then.
 void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
-  if (!is_wanted(reading.config.model, "other_truck")) return;
-  if (reading.config.car.far_mass_kg || out.withheld || out.drifts) return;
-  const effect::Explanation& e = out.explanation;
-  auto found = reading.search.find({estimator_config(reading.config).moving_mass_kg,
-                                    e.final_stiffness_npm.value, e.final_coulomb_n.value,
-                                    first.diagnosis().velocity_rms_mps()});
-  if (!found) return;
   Explained with = out;
-  with.other = std::make_shared<const OtherTruck>(std::move(*found));
-  with.without_other_nmse = base_error(e);
+  with.other = other_in(reading.config, reading.search, first.diagnosis().velocity_rms_mps(), out);
+  if (!with.other) return;
+  with.without_other_nmse = base_error(out.explanation);
   with.needless = {};
   const TruckPass pass = pass_of(reading.config, reading.options.source,
                                  {{}, {}, reading.options.show_progress, {}, with.other.get()});
   explain_pass(reading, pass, with);
-  if (with.explanation.final.held_out_nmse < (1.0 - kGainOfOther) * e.final.held_out_nmse)
-    out = std::move(with);
+  if (other_leaves_less(with, out)) out = std::move(with);
 }
 
 }  // namespace
+
+std::shared_ptr<const OtherTruck> other_in(const Config& config, const OtherTruckSearch& search,
+                                           double velocity_rms_mps, const Explained& without) {
+  if (!is_wanted(config.model, "other_truck") || config.car.far_mass_kg) return nullptr;
+  if (without.withheld || without.drifts) return nullptr;
+  const effect::Explanation& e = without.explanation;
+  auto found = search.find({estimator_config(config).moving_mass_kg, e.final_stiffness_npm.value,
+                            e.final_coulomb_n.value, velocity_rms_mps});
+  return found ? std::make_shared<const OtherTruck>(std::move(*found)) : nullptr;
+}
+
+bool other_leaves_less(const Explained& with, const Explained& without) noexcept {
+  constexpr double kLeastGain = 0.1;  // of the error that is left
+  return with.explanation.final.held_out_nmse <
+         (1.0 - kLeastGain) * without.explanation.final.held_out_nmse;
+}
 
 Explained explain_truck(const Config& config, const ExplainOptions& options) {
   const EstimatorConfig core = estimator_config(config);

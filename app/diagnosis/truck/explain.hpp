@@ -34,6 +34,15 @@ struct Explained : effect::Judgement {
   std::vector<InputFile> inputs;
 };
 
+/// What `search` saw of a record that was explained `without` it: the other truck, where one may be
+/// told and what is left tells of it; or null.
+[[nodiscard]] std::shared_ptr<const OtherTruck> other_in(const Config& config,
+                                                         const OtherTruckSearch& search,
+                                                         double velocity_rms_mps,
+                                                         const Explained& without);
+/// Whether an explanation `with` it is the better one.
+[[nodiscard]] bool other_leaves_less(const Explained& with, const Explained& without) noexcept;
+
 struct ExplainOptions {
   SourceOptions source;
   std::vector<std::string> validation;  ///< records that are never fitted

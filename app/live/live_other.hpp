@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "app/config/config.hpp"
+#include "app/diagnosis/truck/explain.hpp"
+#include "app/diagnosis/truck/surrogates.hpp"
+#include "app/live/live_floor.hpp"
+#include "dampline/effect/gram_store.hpp"
+#include "dampline/identifier.hpp"
+
+namespace dampline::app {
+
+/// What an explanation is made of.
+struct LiveSums {
+  const effect::GramStore& store;
+  const effect::ImpulseMeter& impulses;
+  const effect::Grids& grids;
+};
+struct LiveKnown {
+  const Config& config;
+  const GuardedNoise& guarded;
+};
+
+/// With the floor, and without what that shows to be needless. False: there is too little yet.
+[[nodiscard]] bool judge_live(const LiveSums& sums, const LiveKnown& known, LiveFloor& floor,
+                              effect::Explainer& explainer, Explained& out);
+
+/// The truck under the other end of the body in a live run's explanation: now and then, the motion
+/// that the floor keeps is explained as a file of it would be, without that truck and with it.
+class LiveOther {
+ public:
+  static constexpr double kEveryS = 20.0;  ///< a tenth of a second of work, 2 s where it is found
+
+  explicit LiveOther(const IdentifierConfig& core) : core_{core} {}
+  /// `out`: the run explained without it at `time_s`; with it where that leaves less, now or when
+  /// it was last looked for. Returns what time of the run `out` is of.
+  double look(const LiveKnown& known, const LiveFloor& kept, double time_s,
+              effect::Explainer& explainer, Explained& out);
+  /// The next look is a new one.
+  void forget() noexcept { looked_s_ = -kEveryS; }
+
+ private:
+  std::optional<Explained> find(const LiveKnown& known, const std::vector<Sample>& samples,
+                                effect::Explainer& explainer, const Explained& run) const;
+
+  IdentifierConfig core_;
+  double looked_s_{-kEveryS};
+  std::optional<Explained> with_;  // as it was last found
+};
+
+}  // namespace dampline::app
