@@ -101,6 +101,19 @@ TEST(AStrangersRig, IsNotGuessedAt) {
               HasSubstr("expected a number or a unit"));
 }
 
+TEST(AStrangersRig, MayStandStillForLongBeforeItMoves) {
+  std::string text = "time_s,deflection_m,force_n\n";
+  const std::vector<Row> moving = rows(uniform());
+  const auto rest = static_cast<int>(moving.size()) / 3;
+  for (int i = 0; i < rest; ++i)
+    text += fmt::format("{:.6f},{:.10f},{:.6f}\n", i / 400.0, moving[0].deflection_m,
+                        moving[static_cast<std::size_t>(i)].force_n * 1e-3);
+  for (const Row& r : moving)
+    text +=
+        fmt::format("{:.6f},{:.10f},{:.6f}\n", r.time_s + rest / 400.0, r.deflection_m, r.force_n);
+  expect_quadratic(explained(text));
+}
+
 std::string with_rate(const char* name, double Row::*rate, double factor) {
   std::string out = fmt::format("time_s,deflection_m,{},force_n\n", name);
   for (const Row& r : rows(uniform()))

@@ -118,6 +118,12 @@ Series head_of(Series series, Eigen::Index count) {
   return series;
 }
 
+Eigen::Index moving_samples(const Series& series) {
+  Eigen::Index out = 0;
+  for (Eigen::Index i = 0; i < series.size(); ++i) out += series.why_left_out(i) == 0.0 ? 1 : 0;
+  return out;
+}
+
 /// The final model's coefficients as the first part of the records gives them, again and again.
 Convergence convergence_of(const Model& model, const std::vector<Series>& records) {
   constexpr int kRows = 12;
@@ -136,7 +142,8 @@ Convergence convergence_of(const Model& model, const std::vector<Series>& record
     double left_s = time_s;
     for (const Series& s : records) {
       const auto count = std::min(s.size(), static_cast<Eigen::Index>(left_s / s.interval_s));
-      if (count >= kFewestSamples) seen.push_back(head_of(seen_by(model, s), count));
+      Series head = head_of(seen_by(model, s), count);
+      if (moving_samples(head) >= kFewestSamples) seen.push_back(std::move(head));
       left_s -= static_cast<double>(count) * s.interval_s;
     }
     if (seen.empty()) continue;

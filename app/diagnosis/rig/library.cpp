@@ -91,13 +91,8 @@ void add_damping(Library& out, const core::Terms& base) {
 }
 
 void add_viscoelastic(Library& out, const Scale& scale) {
-  const double slow_s = scale.deflection_m / scale.velocity_mps;
-  const double interval_s = scale.step_m / scale.velocity_mps;
-  for (const double share : ratios(kShortestTime, kLongestTime, kTimeRatio)) {
-    const double time_s = share * slow_s;
-    if (time_s > kFewestSteps * interval_s)
-      out.candidates.push_back({"viscoelastic", time_s, {out.add({Kind::kMaxwell, time_s})}, 1});
-  }
+  for (const double time_s : viscoelastic_times(scale))
+    out.candidates.push_back({"viscoelastic", time_s, {out.add({Kind::kMaxwell, time_s})}, 1});
 }
 
 void add_stiffness(Library& out, const Scale& scale) {
@@ -124,6 +119,14 @@ std::vector<double> ratios(double from, double to, double ratio) {
   std::vector<double> out;
   out.reserve(static_cast<std::size_t>(std::max(steps, 0)));
   for (int i = 0; i < steps; ++i) out.push_back(from * std::pow(ratio, i));
+  return out;
+}
+
+std::vector<double> viscoelastic_times(const Scale& scale) {
+  const double slow_s = scale.deflection_m / scale.velocity_mps;
+  const double interval_s = scale.step_m / scale.velocity_mps;
+  std::vector<double> out = ratios(kShortestTime * slow_s, kLongestTime * slow_s, kTimeRatio);
+  std::erase_if(out, [&](double time_s) { return time_s <= kFewestSteps * interval_s; });
   return out;
 }
 
@@ -198,8 +201,10 @@ Library make_library(const Config& config, const Scale& scale) {
   const auto is_wanted = [&](const std::string& name) {
     return app::is_wanted(config.model, name);
   };
-  // Beside all others it would stand in for a mass or for damping in slow motion.
+  // Beside all others it would stand in for a mass or for damping in slow motion: where nobody
+  // named it, it is looked for where a memory leads.
   if (is_named("viscoelastic")) add_viscoelastic(out, scale);
+  out.wants_viscoelastic = is_wanted("viscoelastic") && !is_named("viscoelastic") && !scale.steady;
   out.wants_skew = is_wanted("time_skew");
   out.wants_drift = is_wanted("time_drift");
   out.wants_mode = is_wanted("unmodelled_mode");

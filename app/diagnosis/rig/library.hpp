@@ -59,6 +59,7 @@ struct Library {
   bool wants_drift{false};
   bool wants_impacts{false};
   bool wants_mode{false};
+  bool wants_viscoelastic{false};  ///< in the place of a memory; otherwise it is a candidate
   std::vector<Candidate> candidates;
 
   Eigen::Index add(const Regressor& column);
@@ -72,6 +73,9 @@ struct Library {
 
 /// Throws UsageError for a base that a rig cannot have.
 [[nodiscard]] Library make_library(const Config& config, const Scale& scale);
+
+/// Times of a spring behind a dashpot that a motion can tell, s.
+[[nodiscard]] std::vector<double> viscoelastic_times(const Scale& scale);
 
 /// Columns of a bank of stop operators: hats over u for each travel, and what each side loses with
 /// speed.

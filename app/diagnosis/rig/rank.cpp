@@ -36,14 +36,18 @@ Fit best_with(const State& s, const Candidate& first) {
   return out;
 }
 
-/// Whether friction with a memory leaves clearly less in its full form, a bank or a smooth law,
-/// than another fit: its smallest form is rough.
-bool is_clearer_in_full(const State& s, const Candidate& memory, const Fit& other) {
+/// Friction with a memory in its full form, a bank or a smooth law: its smallest form is rough.
+Fit in_full(const State& s, const Candidate& memory) {
   State full = s;
   choose(full, memory, 0.0, 0.0);
   refine_memory(full, full.chosen.back());
   try_bouc_wen(full, full.chosen.back());
-  const Fit fit = judge_chosen(full).fit;
+  return judge_chosen(full).fit;
+}
+
+/// Whether that leaves clearly less than another fit.
+bool is_clearer_in_full(const State& s, const Candidate& memory, const Fit& other) {
+  const Fit fit = in_full(s, memory);
   return fit.ok && is_clearly_better(fit, other);
 }
 
@@ -138,6 +142,26 @@ void prefer_to_offset(const State& s, std::vector<Ranked>& order) {
       std::swap(order[0], order[i]);
     }
   }
+}
+
+std::string prefer_viscoelastic(State& s, std::vector<Ranked>& order) {
+  if (!s.library.wants_viscoelastic || !is_memory(order.front().candidate->effect)) return {};
+  const std::string memory = order.front().candidate->effect;
+  const auto element = best_viscoelastic(s.records, trial_base(s), viscoelastic_times(s.scale));
+  if (!element) return {};
+  const Fit full = in_full(s, *order.front().candidate);
+  const double more = element->fit.held_out_nmse / full.held_out_nmse - 1.0;
+  if (more > kAlikeMost || is_clearly_better(full, element->fit)) return {};
+  if (!is_clearly_better(element->fit, full)) return fmt::format("{} or viscoelastic", memory);
+  const Eigen::Index column = s.library.add(element->column);
+  s.library.candidates.push_back({"viscoelastic", element->column.a, {column}, 1});
+  evaluate_columns(s);
+  order = rank(s);
+  const auto found = std::find_if(order.begin(), order.end(), [](const Ranked& r) {
+    return r.candidate->effect == "viscoelastic";
+  });
+  if (found != order.end()) std::rotate(order.begin(), found, found + 1);
+  return {};
 }
 
 std::string alike(const State& s, const std::vector<Ranked>& order) {

@@ -134,6 +134,7 @@ bool forward(State& s) {
   }
   if (!passes(s, top, left_before(top))) return false;
   s.alike = alike(s, order);
+  if (s.alike.empty()) s.alike = prefer_viscoelastic(s, order);
   if (!s.alike.empty()) return false;
   take_first(s, order);
   return true;
@@ -146,28 +147,30 @@ const std::vector<Series>& records_at(const State& s, std::size_t count) {
   return s.records;
 }
 
-/// Columns of the base and of the first `count` that were chosen, but for its friction.
-ColumnSet set_with(const State& s, std::size_t count) {
+/// Columns of the base and of the first `count` that were chosen, but for its friction. `stepped`:
+/// with the linear terms that come with the first step.
+ColumnSet set_with(const State& s, std::size_t count, bool stepped) {
   ColumnSet set = s.library.base;
-  if (s.spring_added && (count > 0 || s.base_takes_spring)) set = joined(set, {s.library.spring});
-  if (s.mass_added && (count > 0 || s.base_takes_mass)) set = joined(set, {s.library.mass});
+  if (s.spring_added && (stepped || s.base_takes_spring)) set = joined(set, {s.library.spring});
+  if (s.mass_added && (stepped || s.base_takes_mass)) set = joined(set, {s.library.mass});
   for (std::size_t i = 0; i < count; ++i) set = joined(set, s.chosen[i].candidate.columns);
   return set;
 }
 
 /// The base and the first `count` that were chosen.
-TrialBase base_with(const State& s, std::size_t count) {
+TrialBase base_with(const State& s, std::size_t count, bool stepped) {
   TrialBase out;
   bool memory = false;
   for (std::size_t i = 0; i < count; ++i) {
     out.ridge = std::max(out.ridge, s.chosen[i].ridge);
     memory = memory || is_memory(s.chosen[i].candidate.effect);
   }
-  out.columns = columns_of(s, set_with(s, count));
+  out.columns = columns_of(s, set_with(s, count, stepped));
   if (s.library.base_friction && (s.base_friction_left || !memory))
     out.friction = columns_of(s, s.library.friction);
   return out;
 }
+TrialBase base_with(const State& s, std::size_t count) { return base_with(s, count, count > 0); }
 
 /// Whether a linear term stands above zero in the base alone, too; otherwise it comes with the
 /// first step.
@@ -192,7 +195,7 @@ Model base_model(const State& s, std::vector<std::string>& notes) {
   for (const Chosen& c : chosen) out.terms.push_back(c.step.effect);
   if (s.spring_added && s.base_takes_spring) out.terms.emplace_back("linear spring");
   if (s.mass_added && s.base_takes_mass) out.terms.emplace_back("moving mass");
-  ColumnSet set = set_with(s, count);
+  ColumnSet set = set_with(s, count, count > 0);
   if (const auto friction = TrialFits{records, base}.friction()) {
     out.columns.push_back(*friction);
     out.friction = 0;
@@ -255,35 +258,41 @@ Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
   return out;
 }
 
+/// What the runners-up of a step would have left in its place.
+std::vector<JudgedCandidate> runners_up_of(const State& s, std::size_t i, double before_nmse) {
+  std::vector<JudgedCandidate> out;
+  std::vector<Regressor> more;
+  for (const Candidate& c : s.chosen[i].runners_up)
+    for (const Eigen::Index column : c.columns) more.push_back(s.library.at(column));
+  if (more.empty()) return out;
+  const TrialFits fits{records_at(s, i), base_with(s, i, true), more};
+  Eigen::Index place = 0;
+  for (const Candidate& c : s.chosen[i].runners_up) {
+    ColumnSet set(c.columns.size());
+    std::iota(set.begin(), set.end(), place);
+    place += static_cast<Eigen::Index>(set.size());
+    const Fit fit = fits.best(set);
+    if (fit.ok)
+      out.push_back({c.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / before_nmse, 0.0});
+  }
+  return out;
+}
+
 /// The error before and after each step, and what its runners-up would have left, all with the same
-/// base and on the same records.
+/// base and linear terms and on the same records.
 void chain(State& s, const Explanation& out) {
   double before = out.base.fit.held_out_nmse;
   const std::size_t first = count_of_base(s);
   for (std::size_t i = first; i < s.chosen.size(); ++i) {
     Step& step = s.chosen[i].step;
-    std::vector<Regressor> more;
-    for (const Candidate& c : s.chosen[i].runners_up)
-      for (const Eigen::Index column : c.columns) more.push_back(s.library.at(column));
-    if (!more.empty()) {
-      const TrialFits fits{records_at(s, i), base_with(s, i), more};
-      Eigen::Index place = 0;
-      for (const Candidate& c : s.chosen[i].runners_up) {
-        ColumnSet set(c.columns.size());
-        std::iota(set.begin(), set.end(), place);
-        place += static_cast<Eigen::Index>(set.size());
-        const Fit fit = fits.best(set);
-        if (fit.ok)
-          step.runners_up.push_back(
-              {c.effect, fit.held_out_nmse, 1.0 - fit.held_out_nmse / before, 0.0});
-      }
-    }
+    step.runners_up = runners_up_of(s, i, before);
     step.held_out_before = before;
     const bool last = i + 1 == s.chosen.size();
     const bool same = !s.chosen[i].changes.empty();
     step.held_out_after = last || same
                               ? out.final.fit.held_out_nmse
                               : best_fit(records_at(s, i + 1), base_with(s, i + 1)).held_out_nmse;
+    step.gain = 1.0 - step.held_out_after / before;
     before = step.held_out_after;
     step.terms = out.base.terms;
     for (std::size_t k = first; k <= i; ++k) step.terms.push_back(s.chosen[k].step.effect);
@@ -358,6 +367,7 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   do refine_width(s);
   while (s.chosen.size() < first + kMostSteps && forward(s));
   backward(s);
+  take_change_of_memory(s);
   reconsider_base(s);
   s.spring_added = false;
   if (s.library.may_add_spring) try_linear(s, s.spring_added);

@@ -47,9 +47,9 @@ struct State {
   Library library;
   std::shared_ptr<const Regression> regression;
   std::vector<Chosen> chosen;
-  std::vector<BankElement> bank;    ///< in use
-  std::optional<BoucWen> bouc_wen;  ///< in the place of a bank
-  bool base_friction_left{true};    ///< the base's friction stays beside the bank
+  std::vector<BankElement> bank;       ///< in use
+  std::optional<BestColumn> bouc_wen;  ///< in the place of a bank
+  bool base_friction_left{true};       ///< the base's friction stays beside the bank
   bool spring_added{false};
   bool mass_added{false};
   bool base_takes_spring{false};  ///< it was added to the base, not with the first step

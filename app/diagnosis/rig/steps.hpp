@@ -28,6 +28,9 @@ void prefer_beside_another(const State& s, std::vector<Ranked>& order);
 void prefer_to_offset(const State& s, std::vector<Ranked>& order);
 /// A memory goes first where its smooth form leaves clearly less than what leads.
 void prefer_memory(const State& s, std::vector<Ranked>& order);
+/// A spring behind a dashpot forgets, too: where a memory leads, and it leaves clearly less than
+/// that in full, it goes first. Their names where neither leaves clearly less.
+[[nodiscard]] std::string prefer_viscoelastic(State& s, std::vector<Ranked>& order);
 /// Names of two effects that predict alike; empty where one is better.
 [[nodiscard]] std::string alike(const State& s, const std::vector<Ranked>& order);
 /// Error of the other memory's smallest form over the first one's; 0: there is none.
@@ -44,6 +47,9 @@ void leave_impacts_out(State& s);
 /// The best of lateness, change over the record, and modes.
 [[nodiscard]] std::optional<Trial> best_trial(const State& s, double before_nmse);
 void take(State& s, const Trial& trial);
+/// A travel or gap that is another one from some moment on changes over the record; the law stays
+/// one for all of it.
+void take_change_of_memory(State& s);
 /// An inertia force is no effect that a damper lacks: effects are looked for beside it. A late
 /// force is one of a negative mass, an early one may be meant by a positive one.
 [[nodiscard]] bool take_mass(State& s, const std::vector<Ranked>& order,

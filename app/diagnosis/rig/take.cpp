@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/diagnosis/rig/memory_change.hpp"
 #include "app/diagnosis/rig/remainder.hpp"
 #include "app/diagnosis/rig/steps.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
@@ -133,6 +134,80 @@ bool take_mass(State& s, const std::vector<Ranked>& order, const std::optional<T
       "motion looks the same. To have it in the base: [model] inertia = \"identify\"",
       mass_kg, std::sqrt(without.held_out_nmse), std::sqrt(with.held_out_nmse)));
   return true;
+}
+
+namespace {
+
+/// What stands beside a memory: all but that and changes over the record.
+std::vector<Regressor> beside_memory(const State& s, const Judged& now) {
+  ColumnSet set = joined(s.library.base, {s.library.spring, s.library.offset, s.library.viscous});
+  if (s.mass_added) set = joined(set, {s.library.mass});
+  if (s.library.base_friction) set = joined(set, {s.library.friction[now.width]});
+  for (const Chosen& c : s.chosen)
+    if (!is_memory(c.step.effect) && c.step.effect != "time_drift")
+      set = joined(set, c.candidate.columns);
+  return columns_of(s, set);
+}
+
+Series part_of(Series series, Eigen::Index first, Eigen::Index count) {
+  for (Eigen::VectorXd* values :
+       {&series.time_s, &series.deflection_m, &series.velocity_mps, &series.force_n,
+        &series.reference_n, &series.accel_mps2, &series.left_out})
+    if (values->size() >= first + count) *values = Eigen::VectorXd{values->segment(first, count)};
+  return series;
+}
+
+/// What the longer part of a record that changes has: the plainest forms hardly tell.
+std::string memory_of_part(const State& s, double at_share) {
+  State part = s;
+  const Series& record = s.records.front();
+  const auto at = static_cast<Eigen::Index>(at_share * static_cast<double>(record.size()));
+  const bool tail = at_share < 0.5;
+  part.records = {part_of(record, tail ? at : 0, tail ? record.size() - at : at)};
+  part.chosen.clear();
+  part.bank.clear();
+  part.bouc_wen.reset();
+  part.base_friction_left = true;
+  evaluate_columns(part);
+  for (const Ranked& ranked : rank(part)) {
+    if (!is_memory(ranked.candidate->effect)) continue;
+    choose(part, Candidate{*ranked.candidate}, 0.0, 0.0);
+    refine_memory(part, part.chosen.back());
+    try_bouc_wen(part, part.chosen.back());
+    return part.chosen.back().step.effect;
+  }
+  return {};
+}
+
+}  // namespace
+
+void take_change_of_memory(State& s) {
+  const auto memory = std::find_if(s.chosen.begin(), s.chosen.end(),
+                                   [](const Chosen& c) { return is_memory(c.step.effect); });
+  if (memory == s.chosen.end() || memory->of_base || !s.library.wants_drift) return;
+  if (filtered(s) || s.records.size() > 1) return;
+  const Judged now = judge_chosen(s);
+  auto change = change_of_memory(s.library, beside_memory(s, now), s.records.front(), now.fit);
+  if (!change) return;
+  const std::string name = memory_of_part(s, change->at_share);
+  if (!name.empty()) change->effect = name;
+  if (!s.bouc_wen) memory->step.effect = memory->candidate.effect = change->effect;
+  std::erase_if(s.chosen, [](const Chosen& c) { return c.step.effect == "time_drift"; });
+  choose(s, {"time_drift", 0.0, {}, 0}, 0.0, block_t(now.fit, change->fit));
+  constexpr double kTravelPlace = 0.13;  // between the travels that are tried, evenly spread
+  const Series& r = s.records.front();
+  const double length_s = r.time_s[r.size() - 1] - r.time_s[0];
+  s.chosen.back().step.parameters = {
+      {fmt::format("time_drift_{}_travel", change->effect),
+       2.0 * (change->after_m - change->before_m),
+       2.0 * kTravelPlace * std::hypot(change->before_m, change->after_m), "m"},
+      {"time_drift_time", r.time_s[0] + change->at_share * length_s, kStepPlace * length_s, "s"}};
+  s.notes.push_back(fmt::format(
+      "{} in its plainest form, with a travel of {:.3g} mm before {:.4g} s and {:.3g} mm after, "
+      "leaves an rrse of {:.3f}: less than a law that does not change. The law that stands here is "
+      "one for the whole record, a mean of both.",
+      change->effect, 2e3 * change->before_m, s.chosen.back().step.parameters[1].value,
+      2e3 * change->after_m, std::sqrt(change->fit.held_out_nmse)));
 }
 
 void take(State& s, const Trial& trial) {

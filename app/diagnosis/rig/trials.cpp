@@ -70,11 +70,6 @@ constexpr std::array kShapes{-1.5, -1.0, -0.5, 0.0, 0.5, 1.0};
 constexpr double kShapeStep = 0.5;
 constexpr int kRounds = 6;
 
-struct Best {
-  Regressor column;
-  Fit fit;
-};
-
 /// Lagrange's polynomial through the six samples about i - 1 + part / parts; a straight line at the
 /// ends.
 double between_parts(const Eigen::VectorXd& x, Eigen::Index i, int part, int parts) {
@@ -105,7 +100,7 @@ double start_of(const Eigen::VectorXd& x, double travel_m, double shape) {
 
 /// Every column in turn beside the base; a spring that pushes is no hysteresis.
 void look(const std::vector<Series>& records, const TrialBase& base,
-          const std::vector<Regressor>& columns, Best& best) {
+          const std::vector<Regressor>& columns, BestColumn& best) {
   const TrialFits fits{records, base, columns};
   auto [place, fit] = fits.best_positive(columns.size());
   if (fit.beats(best.fit)) best = {columns[place], std::move(fit)};
@@ -113,16 +108,29 @@ void look(const std::vector<Series>& records, const TrialBase& base,
 
 /// A look at the neighbours; whether one of them was clearly better.
 bool move(const std::vector<Series>& records, const TrialBase& base, double ratio, double step,
-          Best& best) {
+          BestColumn& best) {
   constexpr double kWorthwhile = 0.995;
   const Regressor from = best.column;
   const double before = best.fit.held_out_nmse;
   std::vector<Regressor> columns;
-  for (const double times : {1.0 / ratio, 1.0, ratio})
-    for (const double more : {-step, 0.0, step})
-      columns.push_back({from.kind, times * from.a, from.b + more});
+  for (const double times : {1.0 / ratio, 1.0, ratio}) {
+    columns.push_back({from.kind, times * from.a, from.b});
+    for (const double more : {-step, step})
+      if (more != 0.0) columns.push_back({from.kind, times * from.a, from.b + more});
+  }
   look(records, base, columns, best);
   return best.fit.held_out_nmse < kWorthwhile * before;
+}
+
+/// Between the points of a grid.
+void refine(const std::vector<Series>& records, const TrialBase& base, double ratio, double step,
+            BestColumn& best) {
+  for (int i = 0; i < kRounds; ++i) {
+    ratio = std::sqrt(ratio);
+    step *= 0.5;
+    while (move(records, base, ratio, step, best)) {
+    }
+  }
 }
 
 }  // namespace
@@ -283,24 +291,29 @@ Eigen::VectorXd bouc_wen(const Eigen::VectorXd& deflection_m, double travel_m, d
   return out;
 }
 
-std::optional<BoucWen> best_bouc_wen(const std::vector<Series>& records, const TrialBase& base,
-                                     double deflection_m) {
+std::optional<BestColumn> best_bouc_wen(const std::vector<Series>& records, const TrialBase& base,
+                                        double deflection_m) {
   std::vector<Regressor> columns;
   for (const double share : ratios(kShortest, kLongest, kRatio))
     for (const double shape : kShapes)
       columns.push_back({Kind::kBoucWen, share * deflection_m, shape});
-  Best best;
+  BestColumn best;
   look(records, base, columns, best);
   if (!best.fit.ok) return std::nullopt;
-  double ratio = std::sqrt(kRatio);
-  double step = 0.5 * kShapeStep;
-  for (int i = 0; i < kRounds; ++i) {
-    while (move(records, base, ratio, step, best)) {
-    }
-    ratio = std::sqrt(ratio);
-    step *= 0.5;
-  }
-  return BoucWen{best.column, best.fit};
+  refine(records, base, kRatio, kShapeStep, best);
+  return best;
+}
+
+std::optional<BestColumn> best_viscoelastic(const std::vector<Series>& records,
+                                            const TrialBase& base,
+                                            const std::vector<double>& times_s) {
+  std::vector<Regressor> columns;
+  for (const double time_s : times_s) columns.push_back({Kind::kMaxwell, time_s});
+  BestColumn best;
+  if (!columns.empty()) look(records, base, columns, best);
+  if (!best.fit.ok) return std::nullopt;
+  refine(records, base, kRatio, 0.0, best);
+  return best;
 }
 
 }  // namespace dampline::app::rig

@@ -92,13 +92,17 @@ struct Trial {
 /// Where it slips, in metres: the largest state; 0 where it never comes to slip.
 [[nodiscard]] double bouc_wen_slip_m(double travel_m, double shape);
 
-struct BoucWen {
+struct BestColumn {
   Regressor column;
   Fit fit;
 };
 
 /// The one that leaves least beside a base; nothing where none helps.
-[[nodiscard]] std::optional<BoucWen> best_bouc_wen(const std::vector<Series>& records,
-                                                   const TrialBase& base, double deflection_m);
+[[nodiscard]] std::optional<BestColumn> best_bouc_wen(const std::vector<Series>& records,
+                                                      const TrialBase& base, double deflection_m);
+/// The same of a spring behind a dashpot; `times_s`: where to look.
+[[nodiscard]] std::optional<BestColumn> best_viscoelastic(const std::vector<Series>& records,
+                                                          const TrialBase& base,
+                                                          const std::vector<double>& times_s);
 
 }  // namespace dampline::app::rig

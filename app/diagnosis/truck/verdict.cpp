@@ -20,6 +20,15 @@ bool is_below_floor(const effect::Step& step, bool first, double floor_nmse) {
   return step.held_out_nmse_before < kBelowFloor * floor_nmse;
 }
 
+/// A stop that pulls, friction with a memory that drives.
+bool is_below_nothing(const effect::Step& step) {
+  using effect::Effect;
+  const Effect e = step.chosen.effect;
+  const bool is_force =
+      e == Effect::kBumpStop || e == Effect::kViscoelastic || effect::has_memory(e);
+  return is_force && step.parameter[0].estimate.value < 0.0;
+}
+
 bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -63,6 +72,7 @@ effect::Effect needless_effect(const effect::Explanation& e) noexcept {
     const Estimate& first = step.parameter[0].estimate;
     if (step.chosen.effect == effect::Effect::kTimeSkew && std::abs(first.value) < 2.0 * first.std)
       return step.chosen.effect;
+    if (is_below_nothing(step)) return step.chosen.effect;
     if (is_below_floor(step, i == 0, e.floor_nmse)) return step.chosen.effect;
   }
   return effect::Effect::kUnknown;

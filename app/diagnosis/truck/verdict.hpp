@@ -17,8 +17,8 @@ namespace dampline::app {
                               effect::Explainer& explainer, Explained& out);
 
 /// An effect that was added and is none: a channel late by less than twice what its lateness may be
-/// wrong by, or a later or faint one beside a model that left less without it than sensors and
-/// rounding do. kUnknown where each is needed.
+/// wrong by, a stop or a friction with memory below nothing, or a later or faint one beside a model
+/// that left less without it than sensors and rounding do. kUnknown where each is needed.
 [[nodiscard]] effect::Effect needless_effect(const effect::Explanation& explanation) noexcept;
 
 /// What the final model leaves, held out: also where it has a parameter that changes.

@@ -7,8 +7,9 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kClearGain = 0.05;   // passes on its own
-constexpr double kSmallGain = 0.025;  // passes with kSignificant
+constexpr double kClearGain = 0.05;   // passes with kLaterZ, or as the smaller one does
+constexpr double kClearZ = 4.0;       // coefficient over deviation
+constexpr double kSmallGain = 0.025;  // passes with kSignificant and kClearZ
 constexpr double kSignificant = 2.0;
 constexpr double kLeastGain = 0.003;  // passes with kVerySignificant
 constexpr double kVerySignificant = 3.3;
@@ -98,10 +99,12 @@ bool passes_later(const Step& step, double gain) noexcept {
                : step.coefficient_t > kLaterZ && step.block_t > kLaterT;
 }
 
-/// Small errors of the velocity's phase look like a time skew, so that needs a larger gain.
+/// Small errors of the velocity's phase look like a time skew, so that needs a larger gain. What
+/// few blocks gain is certain only where the coefficient is.
 bool passes_first(const Step& step) noexcept {
-  if (step.gain > kClearGain || (step.gain > kSmallGain && step.block_t > kSignificant))
-    return true;
+  const bool in_blocks = step.block_t > kSignificant && step.coefficient_t > kClearZ;
+  if (step.gain > kClearGain && (in_blocks || step.coefficient_t > kLaterZ)) return true;
+  if (step.gain > kSmallGain && in_blocks) return true;
   return step.chosen.effect != Effect::kTimeSkew && step.gain > kLeastGain &&
          step.block_t > kVerySignificant;
 }

@@ -26,6 +26,7 @@ constexpr double kStepSignificant = 6.0;
 // Where the frame moves less it sticks more, and friction seems to be more: in simulated records
 // with a change of speed by 1.5 to 5.2 % for each factor e of the deflection.
 constexpr double kChangeOfMotion = 0.06;
+constexpr double kLeastEntryS = 3.0;  // one block alone has no friction and spring of its own
 // A mass moves the frame by a quarter as much at 1.2 Hz, and the other way round.
 constexpr double kGainNotMass = 0.4;
 constexpr double kFollowSignificant = 2.0;  // deviations: no load changes on the way
@@ -203,6 +204,7 @@ ParameterDrift find_parameter_drift(const ScaleFactors& total, EntryList list,
   measure_steps(entries, law.fit.theta, out);
   const double t = std::abs(out.change.value) / std::max(out.change.std, 1e-300);
   const bool steps =
+      entry_s > kLeastEntryS &&
       std::max(out.friction_significance, out.stiffness_significance) > kStepSignificant;
   const double motion = change_of_motion(entries, best);
   const bool large = std::abs(out.change.value) > kLeastChange + kChangeOfMotion * motion;
