@@ -192,18 +192,87 @@ TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
   EXPECT_NEAR(damping.steps[0].parameters[0].value, 900.0, 45.0);
 }
 
-TEST(ARig, RelaxesWithTheSizesOfItsSpringAndDashpotWhereThatIsLookedFor) {
-  Config config = dampline::test::two_terms();
-  config.model.candidates = {"all", "viscoelastic"};
-  const rig::Explanation found =
-      dampline::test::explained(record_of(viscoelastic(4.0e4, 0.13), 61), config);
-  ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
-  ASSERT_EQ(found.steps[0].effect, "viscoelastic") << summarize(found);
-  const Parameter stiffness = dampline::test::parameter(found, "viscoelastic_stiffness");
-  const Parameter time = dampline::test::parameter(found, "viscoelastic_time");
-  EXPECT_NEAR(stiffness.value, 4.0e4, 2.0 * stiffness.std) << summarize(found);
-  EXPECT_NEAR(time.value, 0.13, 2.0 * time.std) << summarize(found);
-  EXPECT_STREQ(found.verdict(), "explained");
+/// Friction with a memory leads, and is not named in its place.
+TEST(ARig, RelaxesWithTheSizesOfItsSpringAndDashpot) {
+  const double planted[][2] = {{4.0e4, 0.13}, {1.0e5, 0.06}, {2.0e4, 0.5}};
+  for (const auto& [stiffness_npm, time_s] : planted) {
+    const rig::Explanation found =
+        dampline::test::explained(record_of(viscoelastic(stiffness_npm, time_s), 61));
+    ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+    ASSERT_EQ(found.steps[0].effect, "viscoelastic") << summarize(found);
+    const Parameter stiffness = dampline::test::parameter(found, "viscoelastic_stiffness");
+    const Parameter time = dampline::test::parameter(found, "viscoelastic_time");
+    EXPECT_NEAR(stiffness.value, stiffness_npm, 2.5 * stiffness.std) << summarize(found);
+    EXPECT_NEAR(time.value, time_s, 2.5 * time.std) << summarize(found);
+    EXPECT_STREQ(found.verdict(), "explained");
+  }
+}
+
+/// Another law from a moment on.
+Law changing_at(double change_s, Law before, Law after) {
+  return [=, steps = 0](const Motion& m, double step_m) mutable {
+    const bool is_after = ++steps > change_s * kRateHz * kFine;
+    const double early_n = before(m, step_m);
+    const double late_n = after(m, step_m);
+    return is_after ? late_n : early_n;
+  };
+}
+
+/// What changes at 25 s is said beside the memory, which keeps its name.
+void expect_change(const rig::Explanation& found, const std::string& effect, double change_m) {
+  ASSERT_EQ(found.steps.size(), 2U) << summarize(found);
+  EXPECT_EQ(found.steps[0].effect, effect) << summarize(found);
+  EXPECT_EQ(found.steps[1].effect, "time_drift") << summarize(found);
+  ASSERT_EQ(found.steps[1].parameters.size(), 2U) << summarize(found);
+  EXPECT_EQ(found.steps[1].parameters[0].name, "time_drift_" + effect + "_travel");
+  // Of the plainest forms.
+  EXPECT_GT(found.steps[1].parameters[0].value, 0.5 * change_m) << summarize(found);
+  EXPECT_LT(found.steps[1].parameters[0].value, 1.5 * change_m) << summarize(found);
+  EXPECT_NEAR(found.steps[1].parameters[1].value, 25.0, 3.5) << summarize(found);
+  EXPECT_STREQ(found.verdict(), "partly_explained");
+}
+
+TEST(ARig, WhoseGapGrowsOrBeginsChanges) {
+  expect_change(explained(changing_at(25.0, backlash(0.002), backlash(0.005)), false, 71),
+                "backlash", 0.003);
+  expect_change(explained(changing_at(25.0, simple(), backlash(0.003)), false, 72), "backlash",
+                0.003);
+}
+
+TEST(ARig, WhoseFrictionBuildsUpOverAnotherTravelChanges) {
+  expect_change(explained(changing_at(25.0, presliding(0.0006), presliding(0.003)), false, 73),
+                "presliding_hysteresis", 0.0024);
+}
+
+/// The errors before and after the steps follow one another, and what a runner-up leaves is beside
+/// the same columns.
+void expect_chain(const rig::Explanation& found) {
+  double before = found.base.fit.held_out_nmse;
+  for (const app::Step& step : found.steps) {
+    EXPECT_DOUBLE_EQ(step.held_out_before, before) << summarize(found);
+    EXPECT_LE(step.held_out_after, before) << summarize(found);
+    EXPECT_DOUBLE_EQ(step.gain, 1.0 - step.held_out_after / step.held_out_before);
+    for (const JudgedCandidate& c : step.runners_up) {
+      EXPECT_DOUBLE_EQ(c.gain, 1.0 - c.held_out_nmse / step.held_out_before);
+      EXPECT_GT(c.held_out_nmse, 0.9 * step.held_out_after) << c.effect << summarize(found);
+      EXPECT_LT(c.held_out_nmse, 1.02 * step.held_out_before) << c.effect << summarize(found);
+    }
+    before = step.held_out_after;
+  }
+  EXPECT_DOUBLE_EQ(found.final.fit.held_out_nmse, before) << summarize(found);
+}
+
+/// The spring is nobody's, and comes with the first step.
+TEST(ARig, HasErrorsThatFollowOneAnother) {
+  const auto bent = [](const Motion& m, double s) {
+    const double x = m.deflection_m;
+    return simple()(m, s) + 9000.0 * x + 1.7e8 * x * x * x;
+  };
+  const rig::Explanation found = explained(bent, false, 74);
+  ASSERT_FALSE(found.steps.empty());
+  EXPECT_FALSE(found.steps[0].runners_up.empty());
+  expect_chain(found);
+  expect_chain(explained(presliding(0.0011), false, 75));
 }
 
 TEST(ARig, LacksNothingWhereNothingIsMissing) {

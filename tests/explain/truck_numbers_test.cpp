@@ -132,5 +132,29 @@ TEST(ATrucksNumbers, AreNotExplainedWhereNothingIsMissing) {
   EXPECT_EQ(found.explanation.conclusion, effect::Conclusion::kComplete) << summarize(found);
 }
 
+/// A dozen and a half of blocks: what a few of them gain is no effect, and what two steps of their
+/// levels show is no change.
+TEST(ATruckOfHalfAMinute, LacksNothingWhereNothingIsMissing) {
+  struct Ride {
+    std::uint64_t seed;
+    double length_s;
+    sim::Load load;
+  };
+  for (const Ride& ride : {Ride{1, 35.0, sim::Load::kLaden}, Ride{1, 36.0, sim::Load::kLaden},
+                           Ride{5, 36.0, sim::Load::kEmpty}, Ride{39, 33.0, sim::Load::kLaden},
+                           Ride{52, 36.0, sim::Load::kEmpty}}) {
+    const sim::SimulationConfig config = sim::reference_run(ride.load, 80.0, ride.seed);
+    sim::Simulation simulation{config};
+    std::string text = "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
+    for (int i = 0; i < static_cast<int>(300.0 * ride.length_s); ++i) {
+      const Sample s = sim::to_sample(simulation.next());
+      text += fmt::format("{:.6f},{},{},{}\n", static_cast<double>(i) / 300.0, s.accel_mps2[0],
+                          s.accel_mps2[1], s.accel_mps2[2]);
+    }
+    const Explained found = numbers_of(text, config.truck.moving_mass_kg);
+    EXPECT_TRUE(told(found).steps.empty()) << ride.seed << summarize(found);
+  }
+}
+
 }  // namespace
 }  // namespace dampline::app

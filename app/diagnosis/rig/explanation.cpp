@@ -19,15 +19,6 @@ app::ModelFound found_of(const Model& model, const std::vector<std::string>& rec
   return out;
 }
 
-/// Every comparison carries a constant and a spring that the model may not have: runners-up are
-/// told beside the step's own error.
-Step beside_the_step(Step step) {
-  const double own = 1.0 - step.gain;
-  for (JudgedCandidate& c : step.runners_up)
-    if (own > 0.0) c.held_out_nmse = step.held_out_after * (1.0 - c.gain) / own;
-  return step;
-}
-
 constexpr double kSegmentS = 8.0;  // of the spectrum, where the records are long enough
 constexpr double kSegmentPoints = 512.0;
 constexpr double kLawReach = 2.0;  // of the velocity's rms
@@ -206,7 +197,7 @@ app::Explanation found_in(const Explanation& e) {
   out.known = {true, !e.is_complete(), false};
   out.base = found_of(e.base, e.records);
   out.final = found_of(e.final, e.records);
-  for (const Step& step : e.steps) out.steps.push_back(beside_the_step(step));
+  out.steps = e.steps;
   out.rejected = e.rejected;
   out.floor_nmse = e.final.floor_nmse;
   out.left_over_floor = e.final.left_over_floor();

@@ -138,14 +138,15 @@ bool take_mass(State& s, const std::vector<Ranked>& order, const std::optional<T
 
 namespace {
 
+bool is_drift(const Chosen& c) { return c.step.effect == "time_drift"; }
+
 /// What stands beside a memory: all but that and changes over the record.
 std::vector<Regressor> beside_memory(const State& s, const Judged& now) {
   ColumnSet set = joined(s.library.base, {s.library.spring, s.library.offset, s.library.viscous});
   if (s.mass_added) set = joined(set, {s.library.mass});
   if (s.library.base_friction) set = joined(set, {s.library.friction[now.width]});
   for (const Chosen& c : s.chosen)
-    if (!is_memory(c.step.effect) && c.step.effect != "time_drift")
-      set = joined(set, c.candidate.columns);
+    if (!is_memory(c.step.effect) && !is_drift(c)) set = joined(set, c.candidate.columns);
   return columns_of(s, set);
 }
 
@@ -187,12 +188,15 @@ void take_change_of_memory(State& s) {
   if (memory == s.chosen.end() || memory->of_base || !s.library.wants_drift) return;
   if (filtered(s) || s.records.size() > 1) return;
   const Judged now = judge_chosen(s);
-  auto change = change_of_memory(s.library, beside_memory(s, now), s.records.front(), now.fit);
-  if (!change) return;
+  State steady = s;
+  std::erase_if(steady.chosen, is_drift);
+  auto change = change_of_memory(s.library, beside_memory(s, now), s.records.front(),
+                                 judge_chosen(steady).fit);
+  if (!change || change->fit.held_out_nmse > (1.0 + kAlikeMost) * now.fit.held_out_nmse) return;
   const std::string name = memory_of_part(s, change->at_share);
   if (!name.empty()) change->effect = name;
   if (!s.bouc_wen) memory->step.effect = memory->candidate.effect = change->effect;
-  std::erase_if(s.chosen, [](const Chosen& c) { return c.step.effect == "time_drift"; });
+  std::erase_if(s.chosen, is_drift);
   choose(s, {"time_drift", 0.0, {}, 0}, 0.0, block_t(now.fit, change->fit));
   constexpr double kTravelPlace = 0.13;  // between the travels that are tried, evenly spread
   const Series& r = s.records.front();
