@@ -11,7 +11,7 @@ namespace dampline::app::law {
 namespace {
 
 constexpr std::size_t kFewestSegments = 8;
-constexpr double kOfMotion = 0.999;       // of the velocity's power: where the motion is
+constexpr double kOfPeak = 0.01;          // of the velocity's density: where the motion is
 constexpr std::size_t kBeside = 3;        // bins that the window smears
 constexpr std::size_t kFewestBins = 16;   // beside the motion
 constexpr std::size_t kHighestBin = 179;  // 0.35 of the rate: filters are above
@@ -47,10 +47,10 @@ void LeftOver::transform() {
 std::optional<double> LeftOver::density_ratio() const {
   if (segments_ < kFewestSegments) return {};
   const auto speed = [&](std::size_t k) { return static_cast<double>(k * k) * motion_[k]; };
-  double all = 0.0;
-  for (std::size_t k = 1; k < kSize / 2; ++k) all += speed(k);
-  std::size_t edge = 1;
-  for (double sum = speed(1); edge < kHighestBin && sum < kOfMotion * all;) sum += speed(++edge);
+  double peak = 0.0;
+  std::size_t edge = kSize / 2 - 1;
+  for (std::size_t k = 1; k <= edge; ++k) peak = std::max(peak, speed(k));
+  while (edge > 1 && speed(edge) < kOfPeak * peak) --edge;
   const std::size_t beside = edge + 1 + kBeside;
   if (beside + kFewestBins > kHighestBin + 1) return {};
   const auto density = [&](std::size_t first, std::size_t end) {
@@ -58,7 +58,7 @@ std::optional<double> LeftOver::density_ratio() const {
                            left_.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
            static_cast<double>(end - first);
   };
-  const double noise = density(beside, kHighestBin + 1);
+  const double noise = density((beside + kHighestBin + 1) / 2, kHighestBin + 1);
   if (!(noise > 0.0)) return {};
   return density(1, edge + 1) / noise;
 }

@@ -116,9 +116,12 @@ Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
   return out;
 }
 
-/// No more is left than the deflection's noise.
-bool follows(const law::Shot& shot, double noise_m) {
-  return shot.residual_m < kFollowed * noise_m || shot.nmse < kExact;
+/// No more is left than noise: by its place in the spectrum where that can be told, by its size
+/// otherwise.
+bool follows(const law::Shot& shot, double noise_m, double white = kWhite) {
+  if (shot.nmse < kExact) return true;
+  if (shot.density_ratio) return *shot.density_ratio < white;
+  return shot.residual_m < kFollowed * noise_m;
 }
 
 /// Where it has come, the speeds at which friction falls that many times as high.
@@ -169,6 +172,12 @@ std::vector<Form> other_forms(const Model& model, const Scale& scale) {
   return out;
 }
 
+double samples_of(const std::vector<law::Drive>& drives) {
+  double out = 0.0;
+  for (const law::Drive& d : drives) out += static_cast<double>(d.deflection_m.size());
+  return out;
+}
+
 /// Which of both is kept.
 void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& scale,
            double noise_m) {
@@ -187,19 +196,20 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
   out.residual_m = motion.residual_m;
   out.noise_m = noise_m;
   out.density_ratio = motion.density_ratio;
-  out.followed =
-      follows(motion, noise_m) || (motion.density_ratio && *motion.density_ratio < kWhite);
+  out.followed = follows(motion, noise_m);
   out.agree = agree(rows, moved.joint.covariance, motion);
+  const double share = out.nmse_of_motion / out.nmse_of_equations;
+  if (out.followed) {
+    // The figures that leave clearly more than noise are the wrong ones.
+    const double more = std::log(out.nmse_of_equations / motion.nmse) * samples_of(drives);
+    const bool surer = log_size(motion.covariance) < log_size(moved.joint.covariance);
+    out.by_motion = share < kMovesBetter || more > kSurelyLess || (out.agree && surer);
+    return;
+  }
   // A law that misses more than noise is held to its force, unless its motion is another one; over
   // short segments, since in long ones chaos parts the like too.
-  double share = out.nmse_of_motion / out.nmse_of_equations;
-  if (!out.followed)
-    share =
-        left_by(motion.unknowns, motion.first_segment_s) / left_by(rows, motion.first_segment_s);
-  if (share < (out.followed ? kMovesBetter : kMovesFarBetter))
-    out.by_motion = true;
-  else if (out.agree)
-    out.by_motion = out.followed && log_size(motion.covariance) < log_size(moved.joint.covariance);
+  out.by_motion = left_by(motion.unknowns, motion.first_segment_s) <
+                  kMovesFarBetter * left_by(rows, motion.first_segment_s);
 }
 
 /// Over short segments of a part of the records, by which forms are compared.
@@ -210,16 +220,16 @@ Moved move_quickly(const Model& model, const Joint& joint, const Eigen::VectorXd
 
 /// The form, and the figures, with which the best of all forms goes over a part of the records;
 /// `first`, over it too, where no other goes clearly better.
-Moved best_form(const Moved& first, std::vector<Series>& records, const Scale& scale,
-                const std::vector<law::Drive>& part, double noise_m) {
+Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<Series>& records,
+                const Scale& scale, const std::vector<law::Drive>& part, double noise_m) {
   if (!first.shot.ok || first.shot.nmse < kExact) return first;
   std::vector<Moved> starts{first};
   Moved best = first;
   const auto take = [&](Moved there, double enough) {
-    if (!there.shot.ok || !(there.shot.held_out_nmse < enough * best.shot.held_out_nmse)) return;
+    if (!there.shot.ok || !(there.shot.nmse < enough * best.shot.nmse)) return;
     best = std::move(there);
   };
-  for (const Form& form : other_forms(first.model, scale)) {
+  for (const Form& form : forms) {
     Model there = form.model;
     const Joint by_rows = fit_jointly(there, records, first.model.ridge, scale);
     if (!by_rows.ok) continue;
@@ -232,8 +242,8 @@ Moved best_form(const Moved& first, std::vector<Series>& records, const Scale& s
   for (const Moved& form : starts)
     for (const double times : kSpeeds) {
       const bool same = kinds_of(form.model) == kinds_of(from.model);
-      if (follows(best.shot, noise_m) || form.joint.size() != from.joint.size() ||
-          same != (times != 1.0))
+      if ((times != 1.0 && follows(best.shot, noise_m, kNearlyWhite)) ||
+          form.joint.size() != from.joint.size() || same != (times != 1.0))
         continue;
       take(move_quickly(form.model, form.joint, with_speeds(from, times), scale, part), kOtherForm);
     }
@@ -254,7 +264,8 @@ double noise_of(const std::vector<Series>& records) {
 
 }  // namespace
 
-Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model) {
+Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model,
+                          double forms_below) {
   Screened out;
   if (!can_move(records, model, scale)) return out;
   const Joint joint = fit_jointly(model, records, model.ridge, scale);
@@ -262,29 +273,41 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
   const double noise_m = noise_of(records);
   const std::vector<law::Drive> part = drives_of(records, kScreened);
   Moved moved = move_quickly(model, joint, unknowns_of(model, joint), scale, part);
-  const bool is_rough =
-      std::any_of(model.columns.begin(), model.columns.end(), [&](const Regressor& c) {
-        return law::is_fading(c.kind) || (c.kind == Kind::kStop && is_memory_travel(c.a, scale));
-      });
-  if (is_rough && !follows(moved.shot, noise_m))
-    moved = best_form(moved, records, scale, part, noise_m);
+  const std::vector<Form> forms = other_forms(model, scale);
+  const bool all = moved.shot.ok && moved.shot.held_out_nmse < forms_below;
+  if (all) moved = best_form(moved, forms, records, scale, part, noise_m);
   if (!moved.shot.ok) return out;
-  return {true, follows(moved.shot, noise_m), moved.shot.held_out_nmse};
+  out.ok = true;
+  out.samples = samples_of(part);
+  out.followed = follows(moved.shot, noise_m, kNearlyWhite);
+  out.is_noise = follows(moved.shot, noise_m);
+  out.compared = all || forms.empty();
+  out.nmse = moved.shot.held_out_nmse;
+  out.model = with(moved.model, moved.joint, moved.shot.unknowns);
+  return out;
 }
 
-void refine_by_motion(std::vector<Series>& records, const Scale& scale, Model& model,
-                      Joint& joint) {
+void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Screened& screened,
+                      Model& model, Joint& joint) {
   if (!joint.ok || !can_move(records, model, scale)) return;
   const std::vector<law::Drive> drives = drives_of(records);
   const double noise_m = noise_of(records);
   Moved best{model, joint, {}};
-  if (!other_forms(model, scale).empty()) {
+  Eigen::VectorXd start = unknowns_of(model, joint);
+  if (screened.ok && screened.compared && kinds_of(screened.model) == kinds_of(model)) {
+    Model there = model;
+    there.columns = screened.model.columns;
+    const Joint by_rows = fit_jointly(there, records, model.ridge, scale);
+    if (by_rows.ok) {
+      start = unknowns_of(screened.model, by_rows);
+      best = {there, by_rows, {}};
+    }
+  } else if (const std::vector<Form> forms = other_forms(model, scale); !forms.empty()) {
     const std::vector<law::Drive> part = drives_of(records, kScreened);
-    best = move_quickly(model, joint, unknowns_of(model, joint), scale, part);
-    best = best_form(best, records, scale, part, noise_m);
+    best = move_quickly(model, joint, start, scale, part);
+    best = best_form(best, forms, records, scale, part, noise_m);
+    start = best.shot.ok ? best.shot.unknowns : unknowns_of(best.model, best.joint);
   }
-  const Eigen::VectorXd start =
-      best.shot.ok ? best.shot.unknowns : unknowns_of(best.model, best.joint);
   best = move(best.model, best.joint, start, scale, drives);
   if (!best.shot.ok) best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;

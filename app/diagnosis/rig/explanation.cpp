@@ -171,16 +171,18 @@ void put_law(const Explanation& e, std::vector<CurveRow>& curve) {
 }  // namespace
 
 bool Explanation::is_complete() const noexcept {
-  const double nmse = final.fit.held_out_nmse;
-  const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
   if (!alike.empty() || !impossible.empty()) return false;
-  if (final.free_run.by_motion && final.free_run.followed) return true;
-  if (final.free_run.segments > 0 && !final.free_run.followed &&
-      std::min(final.free_run.nmse_of_motion, final.free_run.nmse_of_equations) > kMisses)
-    return false;
-  if (nmse < kNegligible) return true;
-  const double structured = std::max(signature.travel_share, signature.surface_share);
+  const FreeRunError& run = final.free_run;
+  const bool moved = run.segments > 0;
+  if (moved && run.followed) return true;
+  // More than noise is left of the motion: the law's own fault, unless the force is noisy.
   const bool noise = final.floor_noise_share > kStructured;
+  if (moved && run.density_ratio && !noise) return false;
+  if (moved && std::min(run.nmse_of_motion, run.nmse_of_equations) > kMisses) return false;
+  const double nmse = final.fit.held_out_nmse;
+  if (nmse < kNegligible) return true;
+  const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
+  const double structured = std::max(signature.travel_share, signature.surface_share);
   return nmse <= above * final.floor_nmse && !(noise && structured > kStructured);
 }
 

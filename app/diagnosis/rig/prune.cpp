@@ -52,6 +52,16 @@ void backward(State& s) {
   }
 }
 
+void set_base(State& s, bool friction, bool viscous) {
+  s.library.base_friction = friction;
+  std::erase(s.library.base, s.library.viscous);
+  if (viscous) s.library.base.push_back(s.library.viscous);
+  std::erase(s.library.base_terms, "coulomb");
+  std::erase(s.library.base_terms, "viscous");
+  if (friction) s.library.base_terms.emplace_back("coulomb");
+  if (viscous) s.library.base_terms.emplace_back("viscous");
+}
+
 void reconsider_base(State& s) {
   if (s.library.base_is_declared) return;
   const auto is_chosen = [&](const char* effect) {
@@ -59,23 +69,15 @@ void reconsider_base(State& s) {
                        [&](const Chosen& c) { return c.step.effect == effect; });
   };
   if (is_chosen("viscous") || is_chosen("asymmetric_viscous") || is_chosen("coulomb")) return;
-  const Library before = s.library;
-  const auto set = [&](bool friction, bool viscous) {
-    s.library.base_friction = friction;
-    s.library.base = before.base;
-    std::erase(s.library.base, s.library.viscous);
-    if (viscous) s.library.base.push_back(s.library.viscous);
+  const auto left_with = [&](bool friction, bool viscous) {
+    set_base(s, friction, viscous);
     return error(s);
   };
-  const double damped = set(false, true);
-  const double rubbed = set(true, false);
-  const double both = set(true, true);
+  const double damped = left_with(false, true);
+  const double rubbed = left_with(true, false);
+  const double both = left_with(true, true);
   const bool needs_both = both < (1.0 - kNeeded) * std::min(damped, rubbed);
-  set(needs_both || rubbed < damped, needs_both || damped <= rubbed);
-  std::erase(s.library.base_terms, "coulomb");
-  std::erase(s.library.base_terms, "viscous");
-  if (s.library.base_friction) s.library.base_terms.emplace_back("coulomb");
-  if (needs_both || damped <= rubbed) s.library.base_terms.emplace_back("viscous");
+  set_base(s, needs_both || rubbed < damped, needs_both || damped <= rubbed);
 }
 
 }  // namespace dampline::app::rig

@@ -54,38 +54,6 @@ void take_of_base(State& s, const std::string& effect) {
   chosen.step.effect = chosen.candidate.effect = effect;
 }
 
-/// The motion of a driven mass by what was chosen and some columns more.
-Screened screened_with(const State& s, const ColumnSet& more) {
-  const auto struck = [](const Chosen& c) { return c.step.effect == "impulsive_input"; };
-  if (!s.refine || !filtered(s) || std::any_of(s.chosen.begin(), s.chosen.end(), struck)) return {};
-  const Judged judged = judge(s, joined(chosen_columns(s), more));
-  if (!judged.fit.ok) return {};
-  Model model;
-  model.columns = columns_of(s, judged.set);
-  model.fit = judged.fit;
-  model.ridge = ridge(s);
-  for (const Chosen& c : s.chosen) {
-    model.skew_s += c.skew_s;
-    if (c.path.hz > 0.0) model.path = c.path;
-    model.changes.insert(model.changes.end(), c.changes.begin(), c.changes.end());
-  }
-  return screen_by_motion(s.records, s.scale, std::move(model));
-}
-
-/// Noise of the deflection bends every equation, and hardly the motion: where what leads leaves
-/// more of the motion than noise, an effect that leaves no more goes first. Whether one leads.
-bool prefer_what_moves(const State& s, std::vector<Ranked>& order) {
-  const std::size_t count = std::min(order.size(), kScreenedEffects);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!screened_with(s, order[i].candidate->columns).followed) continue;
-    const auto first = order.begin();
-    const auto pick = first + static_cast<std::ptrdiff_t>(i);
-    std::rotate(first, pick, pick + 1);
-    return true;
-  }
-  return false;
-}
-
 /// Takes the first of an order.
 void take_first(State& s, const std::vector<Ranked>& order) {
   const Ranked& top = order.front();
@@ -95,23 +63,20 @@ void take_first(State& s, const std::vector<Ranked>& order) {
   chosen.other_memory = other_memory_of(order);
   s.rejected.clear();
   if (!filtered(s)) try_mass(s);
-  if (!is_memory(chosen.step.effect)) return;
+  if (!is_memory(chosen.step.effect) || s.followed) return;
   refine_memory(s, chosen);
   try_bouc_wen(s, chosen);
 }
 
 /// One more step; false where nothing passes.
 bool forward(State& s) {
+  if (s.followed) return false;
   std::vector<Ranked> order = rank(s);
   if (order.empty()) return false;
-  if (screened_with(s, {}).followed) {
+  if (const ByMotion by_motion = prefer_what_moves(s, order); by_motion != ByMotion::kUnknown) {
     keep_rejected(s, order);
-    return false;
-  }
-  if (prefer_what_moves(s, order)) {
-    keep_rejected(s, order);
-    take_first(s, order);
-    return true;
+    if (by_motion == ByMotion::kFirst) take_first(s, order);
+    return by_motion == ByMotion::kFirst;
   }
   const auto left_before = [](const auto& ranked) {
     return ranked.fit.held_out_nmse / (1.0 - ranked.gain);
@@ -248,7 +213,7 @@ Model final_model(State& s, ColumnSet& set, std::vector<std::string>& notes) {
   const bool struck = std::any_of(s.chosen.begin(), s.chosen.end(), [](const Chosen& c) {
     return c.step.effect == "impulsive_input";
   });
-  if (s.refine && !struck) refine_by_motion(s.records, s.scale, out, joint);
+  if (s.refine && !struck) refine_by_motion(s.records, s.scale, s.screened, out, joint);
   for (std::size_t i = 0; i < set.size(); ++i)
     s.library.columns[static_cast<std::size_t>(set[i])] = out.columns[i];
   evaluate_columns(s);
@@ -364,11 +329,12 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   for (const std::string& effect : s.library.base_searched) take_of_base(s, effect);
   const std::size_t first = s.chosen.size();
   if (s.library.wants_impacts) leave_impacts_out(s);
+  complete_base_by_motion(s);
   do refine_width(s);
   while (s.chosen.size() < first + kMostSteps && forward(s));
   backward(s);
   take_change_of_memory(s);
-  reconsider_base(s);
+  if (!prune_base_by_motion(s)) reconsider_base(s);
   s.spring_added = false;
   if (s.library.may_add_spring) try_linear(s, s.spring_added);
   s.mass_added = false;

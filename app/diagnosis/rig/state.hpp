@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/diagnosis/rig/by_motion.hpp"
 #include "app/diagnosis/rig/explanation.hpp"
 #include "app/diagnosis/rig/library.hpp"
 #include "app/diagnosis/rig/surrogate.hpp"
@@ -54,7 +55,9 @@ struct State {
   bool mass_added{false};
   bool base_takes_spring{false};  ///< it was added to the base, not with the first step
   bool base_takes_mass{false};
-  bool refine{true};  ///< the final law by its own motion
+  bool refine{true};     ///< the final law by its own motion
+  bool followed{false};  ///< what was chosen leaves hardly more of the motion than noise
+  Screened screened;     ///< what does so
   std::vector<std::string> notes;
   std::vector<JudgedCandidate> rejected;  ///< of the newest round
   std::vector<Candidate> losers;          ///< the same, after the best

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The steps of a search: rank, accept, take, refine, prune.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,25 @@ void prefer_memory(const State& s, std::vector<Ranked>& order);
 [[nodiscard]] bool is_clearly_better(const Fit& fit, const Fit& other);
 /// Clearly better than every column: many things look a little like a delay.
 [[nodiscard]] bool is_better(const State& s, const Trial& trial, const std::vector<Ranked>& order);
+
+/// What the motion of a driven mass says of a step.
+enum class ByMotion : std::uint8_t {
+  kUnknown,  ///< nothing that decides: the equations do
+  kNothing,  ///< no more is left than noise
+  kAlike,    ///< several leave no more than noise: s.alike has their names
+  kFirst     ///< the order's first leaves no more
+};
+/// Noise of the deflection bends every equation, and hardly the motion: an effect with which the
+/// force alone moves the mass as it was measured goes first, in the form that does it best.
+[[nodiscard]] ByMotion prefer_what_moves(State& s, std::vector<Ranked>& order);
+/// The other of friction and damping, where nobody declared the base, it has one of them, and both
+/// leave far less of the motion.
+void complete_base_by_motion(State& s);
+/// Friction and damping that the motion does not need go, where nobody declared the base. False
+/// where the motion does not decide.
+[[nodiscard]] bool prune_base_by_motion(State& s);
+/// The base's friction and damping, and the names of its terms.
+void set_base(State& s, bool friction, bool viscous);
 
 /// Impacts come first: they are in every column's way.
 void leave_impacts_out(State& s);

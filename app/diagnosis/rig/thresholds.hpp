@@ -83,15 +83,22 @@ inline constexpr double kLongestMove = 0.2;  // of a place at once
 inline constexpr double kHalvesApart = 3.0;  // deviations: halves differ, and the deviation widens
 
 // The law by its own motion.
-inline constexpr double kFollowed = 1.05;  // times the deflection's noise: nothing more is left
-inline constexpr double kExact = 1e-8;     // nmse of the motion: the same
-inline constexpr double kWhite = 1.2;      // times as dense as beside the motion: the same
+inline constexpr double kFollowed = 1.05;    // times the deflection's noise: nothing more is left
+inline constexpr double kExact = 1e-8;       // nmse of the motion: the same
+inline constexpr double kWhite = 1.2;        // times as dense as beside the motion: the same
+inline constexpr double kNearlyWhite = 1.5;  // the same, over a part of the records
 inline constexpr std::array kSpeeds{1.0, 0.5, 2.0};  // of a friction that falls: starts
 inline constexpr double kScreened = 60.0;  // periods of the motion, by which forms are compared
 inline constexpr std::size_t kScreenedEffects = 5;  // of a step, the first
-inline constexpr double kMisses = 1e-3;             // nmse of the motion: the law is not complete
-inline constexpr double kOtherForm = 0.999;     // of the squares left: another form of an effect
-inline constexpr double kPlainer = 1.001;       // the same, for one with a figure less
+inline constexpr std::size_t kFormsOf = 2;   // effects that alone do not follow: in other forms
+inline constexpr double kOtherToo = 4.0;     // times the least left: its other forms are tried
+inline constexpr double kBaseLacks = 0.5;    // of what is left, by both of friction and damping
+inline constexpr double kSameLeft = 10.0;    // of twice the log likelihood: no difference
+inline constexpr double kSurelyLess = 20.0;  // of twice the log likelihood: an effect is there
+inline constexpr double kLookedOn = 0.5;     // of the gain of what moves the mass: others might too
+inline constexpr double kMisses = 1e-3;      // nmse of the motion: the law is not complete
+inline constexpr double kOtherForm = 0.999;  // of the squares left: another form of an effect
+inline constexpr double kPlainer = 1.001;    // the same, for one with a figure less
 inline constexpr double kMovesFarBetter = 0.1;  // the same, where more than noise is left
 inline constexpr double kMovesBetter = 0.8;  // of the squares left: it agrees, and is better still
 inline constexpr double kAgree = 3.0;  // deviations of the difference between it and the equations
