@@ -213,6 +213,35 @@ TEST(ADrivenMass, HasASpringWithBoucsAndWensHysteresis) {
 
 TEST(ADrivenMass, HasAFrictionThatBuildsUpAsDahls) { expect_hysteresis({7.0e4, 2600.0, 1.0, 0.0}); }
 
+/// Nobody says what the base is. The deflection's rms is some 0.3 mm.
+rig::Explanation freely_explained(const std::string& text,
+                                  const std::vector<std::string>& candidates = {"all"}) {
+  Config config;
+  config.model.candidates = candidates;
+  config.model.inertia = config.model.stiffness = "identify";
+  return dampline::test::explained(text, config);
+}
+
+TEST(ADrivenMass, HasAFrictionThatBuildsUpBehindMuchNoise) {
+  const Hysteresis dahl{7.0e4, 2600.0, 1.0, 0.0};
+  const rig::Explanation found =
+      freely_explained(record([](double, double) { return 0.0; }, dahl, 30e-6));
+  ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
+  EXPECT_EQ(found.steps[0].effect, "presliding_hysteresis");
+  EXPECT_STREQ(found.verdict(), "explained") << summarize(found);
+  EXPECT_EQ(found.base.terms.back(), "viscous") << "and no friction beside it";
+  EXPECT_LT(found.final.free_run.density_ratio.value(), 1.2);
+  EXPECT_NEAR(value_of(found, "presliding_hysteresis_stiffness"), dahl.alpha, 0.05 * dahl.alpha);
+}
+
+TEST(ADrivenMass, IsNotCompleteWhereMoreThanNoiseIsLeftOfItsMotion) {
+  const rig::Explanation found =
+      freely_explained(record([](double x, double) { return 2.0e9 * x * x * x; }, {}, 15e-6),
+                       {"quadratic_stiffness"});
+  EXPECT_GT(found.final.free_run.density_ratio.value(), 1.5) << summarize(found);
+  EXPECT_STREQ(found.verdict(), "unexplained");
+}
+
 TEST(ADrivenMass, HasASpringBehindADashpotWhereThatIsLookedFor) {
   for (const auto& [stiffness_npm, time_s] : {std::pair{8.0e4, 3.0e-3}, {4.0e4, 9.0e-3}}) {
     const rig::Explanation found =

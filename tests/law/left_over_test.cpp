@@ -33,6 +33,19 @@ TEST(LeftOver, TellsNoiseFromWhatALawMisses) {
   EXPECT_GT(density_ratio_of(20'000, 0.06, 0.25).value(), 1.4);
 }
 
+TEST(LeftOver, KnowsWhereTheMotionIsThoughSegmentsDoNotMeet) {
+  // Every 300 samples the law starts anew where it has come to miss a tenth of the motion.
+  LeftOver out;
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 20'000; ++i) {
+    const double motion = 50.0 * std::sin(2.0 * std::numbers::pi * 0.005 * i);
+    const double missed = 5.0 * (static_cast<double>(i % 300) / 300.0);
+    out.add(motion + missed, normal(random) + missed);
+  }
+  EXPECT_GT(out.density_ratio().value(), 10.0);
+}
+
 TEST(LeftOver, SaysNothingWhereItCannotTell) {
   EXPECT_FALSE(density_ratio_of(2'000, 0.06, 0.0).has_value());         // too short
   EXPECT_FALSE(density_ratio_of(20'000, 0.4, 0.0).has_value());         // nothing beside the motion
