@@ -226,7 +226,11 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
   std::vector<Moved> starts{first};
   Moved best = first;
   const auto take = [&](Moved there, double enough) {
-    if (!there.shot.ok || !(there.shot.nmse < enough * best.shot.nmse)) return;
+    if (!there.shot.ok) return;
+    // What misses more than noise makes unlike blocks, which only held out say what is better.
+    const bool noise = follows(there.shot, noise_m, kNearlyWhite);
+    const double left = noise ? there.shot.nmse : there.shot.held_out_nmse;
+    if (!(left < enough * (noise ? best.shot.nmse : best.shot.held_out_nmse))) return;
     best = std::move(there);
   };
   for (const Form& form : forms) {
