@@ -162,6 +162,10 @@ _COUNTS = ("samples gaps lost saturated stuck not_finite repeated blocks blocks_
 _WIDTHS_MPS = 1e-3 * np.array([0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0])
 _STIFFNESS, _VISCOUS, _TARGET = 18, 19, 20
 _LONG_SCALES = 4
+# Of the time that the truck sticks: from where on and up to where the bent law counts; what bias is
+# left of level and stiffness for each unit of the share, and from where on.
+_BENDS = 0.15, 0.25
+_STICKING = (0.05, 0.12), (0.32, 0.18)
 
 Factors = collections.namedtuple("Factors", "factor rows blocks")
 Factors.__doc__ = """Of one stretch: `factor` (5, 21, 21), the upper triangles R of the scales; `rows`
@@ -185,10 +189,13 @@ class State:
         long_law, long_std = self._law(range(_LONG_SCALES), viscous)
         ratio = 1.0 if sample_rate_hz is None else sample_rate_hz / self.sample_rate_hz
         coulomb, stiffness = law.theta[0], long_law.theta[1]
+        level, level_std = self._level(law, std[0], viscous)
+        sticks = [factor * max(self.stick_share - start, 0.0) for factor, start in _STICKING]
+        level_std = np.hypot(level_std, level * np.hypot(1e-3, sticks[0]))
+        stiffness_std = np.hypot(long_std[1], stiffness * np.hypot(3e-3, sticks[1]))
         k = moving_mass_kg * ratio**2
-        out = {"coulomb": Estimate(moving_mass_kg * coulomb,
-                                   moving_mass_kg * np.hypot(std[0], 1e-3 * coulomb), "N"),
-               "stiffness": Estimate(k * stiffness, k * np.hypot(long_std[1], 3e-3 * stiffness), "N/m")}
+        out = {"coulomb": Estimate(moving_mass_kg * level, moving_mass_kg * level_std, "N"),
+               "stiffness": Estimate(k * stiffness, k * stiffness_std, "N/m")}
         if viscous:
             floor = 3e-3 * coulomb / self.velocity_rms_mps
             out["viscous"] = Estimate(moving_mass_kg * ratio * law.theta[2],
@@ -204,18 +211,37 @@ class State:
         """Of the samples that moved."""
         return float(np.sqrt(self.sum_squares / self.moving))
 
+    @property
+    def stick_share(self):
+        """Of the samples that moved."""
+        return self.sticking / self.moving
+
+    def _level(self, law, std, viscous):
+        """The level of the law, or, the more the truck sticks, of the bent one, and its deviation."""
+        share = np.clip((self.stick_share - _BENDS[0]) / (_BENDS[1] - _BENDS[0]), 0.0, 1.0)
+        below, above = _neighbours(law.width)
+        if share == 0.0 or above - below < 2:
+            return law.theta[0], std
+        columns = _map([_unit(law.width)] + _middle(viscous) +
+                       [_unit(above) - _unit(below), _unit(above) - 2 * _unit(law.width) + _unit(below)])
+        fit = _weighted_fit(self.total, columns, range(_SCALES))
+        bent_std = self._deviations(fit, columns)[0]
+        return law.theta[0] + share * (fit.theta[0] - law.theta[0]), std + share * (bent_std - std)
+
+    def _deviations(self, fit, columns):
+        count = len(self.entries)
+        factor = 1.0 + 3.0 / (count - 3.0) if count > 4 else 4.0
+        return factor * np.sqrt(np.maximum(np.diag(_score_covariance(fit, self.entries, columns)), 0.0))
+
     def _law(self, scales, viscous):
         """The law of the width that fits best, with the width free, and its unknowns' deviations."""
-        middle = [_unit(_STIFFNESS)] + ([_unit(_VISCOUS)] if viscous else [])
+        middle = _middle(viscous)
         fits = [_weighted_fit(self.total, _map([_unit(i)] + middle), scales) for i in range(len(_WIDTHS_MPS))]
         width = int(np.argmin([fit.objective for fit in fits]))
         below, above = _neighbours(width)
         columns = _map([_unit(width)] + middle + [_unit(above) - _unit(below)])
         fit = _weighted_fit(self.total, columns, scales)._replace(width=width)
-        count = len(self.entries)
-        factor = 1.0 + 3.0 / (count - 3.0) if count > 4 else 4.0
-        covariance = _score_covariance(fit, self.entries, columns)
-        return fit, factor * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        return fit, self._deviations(fit, columns)
 
 
 def read_state(path):
@@ -316,6 +342,10 @@ def _unit(column):
 
 def _map(regressors):
     return np.column_stack(regressors + [_unit(_TARGET)])
+
+
+def _middle(viscous):
+    return [_unit(_STIFFNESS)] + ([_unit(_VISCOUS)] if viscous else [])
 
 
 def _neighbours(i):
