@@ -87,6 +87,7 @@ std::optional<Explained> LiveOther::find(const LiveKnown& known, const std::vect
   IdentifierConfig core = core_;
   core.estimator.far_mass_kg = with.other->mass_kg.value;
   std::vector<Sample> beside;
+  beside.reserve(samples.size());
   for (const Sample& sample : samples) beside.push_back(with.other->beside(sample));
   const auto second = run_of(core, {}, beside, [](const auto&...) {});
   floor.forget();

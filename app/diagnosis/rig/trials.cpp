@@ -308,6 +308,7 @@ std::optional<BestColumn> best_viscoelastic(const std::vector<Series>& records,
                                             const TrialBase& base,
                                             const std::vector<double>& times_s) {
   std::vector<Regressor> columns;
+  columns.reserve(times_s.size());
   for (const double time_s : times_s) columns.push_back({Kind::kMaxwell, time_s});
   BestColumn best;
   if (!columns.empty()) look(records, base, columns, best);
