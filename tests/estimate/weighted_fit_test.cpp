@@ -18,7 +18,6 @@ using Fit = WeightedFit<kUnknowns>;
 constexpr double kForce = 0.5;
 constexpr double kStiffness = 80.0;
 constexpr std::array<double, kScales> kSigma{0.3, 0.1, 0.03, 0.1, 0.3};
-constexpr ScaleMask kAll{true, true, true, true, true};
 
 ColumnMap<kUnknowns> force_and_stiffness() {
   ColumnMap<kUnknowns> map = ColumnMap<kUnknowns>::Zero();
@@ -77,7 +76,7 @@ TEST(WeightedFit, RecoversTheTruthWhereScalesDifferInTheirNoise) {
   Synthetic data{1};
   ScaleFactors factors;
   data.add(factors, 2000);
-  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAll);
+  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAllScales);
   ASSERT_TRUE(fit.ok);
   EXPECT_NEAR(fit.theta[0], kForce, 4.0 * std::sqrt(fit.inverse(0, 0)));
   EXPECT_NEAR(fit.theta[1], kStiffness, 4.0 * std::sqrt(fit.inverse(1, 1)));
@@ -88,7 +87,7 @@ TEST(WeightedFit, WeighsEachScaleByItsOwnResidualVariance) {
   Synthetic data{2};
   ScaleFactors factors;
   data.add(factors, 4000);
-  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAll);
+  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAllScales);
   for (std::size_t s = 0; s < kScales; ++s)
     EXPECT_NEAR(fit.weight[s] * kSigma[s] * kSigma[s], 1.0, 0.1) << s;
 }
@@ -103,7 +102,7 @@ TEST(WeightedFit, BeatsOneScaleAloneAndStatesItsScatter) {
     ScaleFactors factors;
     data.add(factors, 60);
     const auto map = force_and_stiffness();
-    const Fit fit = weighted_fit<kUnknowns>(factors, map, kAll);
+    const Fit fit = weighted_fit<kUnknowns>(factors, map, kAllScales);
     const Fit noisy = weighted_fit<kUnknowns>(factors, map, {true, true, false, true, true});
     all += std::pow(fit.theta[1] - kStiffness, 2) / kRuns;
     one += std::pow(noisy.theta[1] - kStiffness, 2) / kRuns;
@@ -127,13 +126,13 @@ TEST(WeightedFit, LeavesOutMaskedScalesAndScalesWithFewRows) {
 }
 
 TEST(WeightedFit, SaysWhenThereIsNothingToFit) {
-  EXPECT_FALSE(weighted_fit<kUnknowns>(ScaleFactors{}, force_and_stiffness(), kAll).ok);
+  EXPECT_FALSE(weighted_fit<kUnknowns>(ScaleFactors{}, force_and_stiffness(), kAllScales).ok);
   Synthetic data{4};
   ScaleFactors factors;
   data.add(factors, 100);
   ColumnMap<kUnknowns> same = force_and_stiffness();
   same.col(1) = same.col(0);
-  EXPECT_FALSE(weighted_fit<kUnknowns>(factors, same, kAll).ok);
+  EXPECT_FALSE(weighted_fit<kUnknowns>(factors, same, kAllScales).ok);
 }
 
 TEST(WeightedFit, APriorDecidesWhatTheDataDoNot) {
@@ -147,7 +146,7 @@ TEST(WeightedFit, APriorDecidesWhatTheDataDoNot) {
   row[1] = 10.0;  // 7 with a deviation of 0.1
   row[2] = 70.0;
   prior.absorb(row);
-  const Fit fit = weighted_fit<kUnknowns>(factors, blind, kAll, prior);
+  const Fit fit = weighted_fit<kUnknowns>(factors, blind, kAllScales, prior);
   ASSERT_TRUE(fit.ok);
   EXPECT_NEAR(fit.theta[1], 7.0, 1e-9);
 }
@@ -187,7 +186,7 @@ Covered coverage(std::size_t blocks, int runs) {
     std::vector<const ScaleFactors*> list;
     list.reserve(entries.size());
     for (const ScaleFactors& entry : entries) list.push_back(&entry);
-    const Fit fit = weighted_fit<kUnknowns>(total, map, kAll);
+    const Fit fit = weighted_fit<kUnknowns>(total, map, kAllScales);
     const auto covariance = score_covariance<kUnknowns>(fit, EntryList{list}, map);
     const double error = std::abs(fit.theta[1] - kStiffness);
     const double factor = short_record_factor(static_cast<double>(blocks));
@@ -221,7 +220,7 @@ TEST(HeldOutNmse, IsTheNoisesShareAndNotLessThanTheFittedError) {
   list.reserve(entries.size());
   for (const ScaleFactors& entry : entries) list.push_back(&entry);
   const auto map = force_and_stiffness();
-  const Fit fit = weighted_fit<kUnknowns>(total, map, kAll);
+  const Fit fit = weighted_fit<kUnknowns>(total, map, kAllScales);
   const double held_out = held_out_nmse_of<kUnknowns, 5>(fit, EntryList{list}, map);
   EXPECT_GE(held_out, fit.weighted_residual / fit.weighted_total);
   // t has F^2 + (0.01 k)^2 = 0.89 of signal; per scale sigma^2 of noise, weights 1 / sigma^2.
@@ -254,7 +253,7 @@ ScaleFactors rows_of_width(double width_mps, double noise, int count) {
 TEST(LawProfile, FindsAWidthBetweenTheTabulatedOnes) {
   using Model = LawModel<true>;
   const ScaleFactors factors = rows_of_width(2.15e-3, 0.03, 20000);
-  const auto with = LawProfile<true>::make(factors, kAll);
+  const auto with = LawProfile<true>::make(factors, kAllScales);
   ASSERT_TRUE(with.fit.ok);
   EXPECT_NEAR(with.width_mps(), 2.15e-3, 0.03e-3);
   EXPECT_NEAR(with.fit.theta[Model::kCoulomb], kForce, 0.005 * kForce);
@@ -264,7 +263,7 @@ TEST(LawProfile, FindsAWidthBetweenTheTabulatedOnes) {
 
 TEST(LawProfile, AViscousPartThatIsNotInTheModelRaisesTheLevel) {
   const ScaleFactors factors = rows_of_width(2.0e-3, 0.03, 20000);
-  const auto without = LawProfile<false>::make(factors, kAll);
+  const auto without = LawProfile<false>::make(factors, kAllScales);
   ASSERT_TRUE(without.fit.ok);
   EXPECT_GT(without.fit.theta[LawModel<false>::kCoulomb], 1.01 * kForce);
 }
@@ -274,7 +273,7 @@ TEST(LawProfile, AViscousPartThatIsNotInTheModelRaisesTheLevel) {
 TEST(LawProfile, TheLevelIsWithinOneAndAHalfPercentWhereverTheWidthLies) {
   using Model = LawModel<true>;
   for (const double width_mps : {1.2e-3, 1.7e-3, 2.0e-3, 2.4e-3, 2.6e-3, 2.8e-3}) {
-    const auto law = LawProfile<true>::make(rows_of_width(width_mps, 0.003, 50000), kAll);
+    const auto law = LawProfile<true>::make(rows_of_width(width_mps, 0.003, 50000), kAllScales);
     ASSERT_TRUE(law.fit.ok);
     EXPECT_NEAR(law.fit.theta[Model::kCoulomb] / kForce, 1.0, 0.015) << width_mps;
     EXPECT_NEAR(law.fit.theta[Model::kViscous], 2.0, 0.6) << width_mps;

@@ -36,5 +36,11 @@ inline app::Parameter parameter(const app::rig::Explanation& found, const std::s
 inline double value_of(const app::rig::Explanation& found, const std::string& name) {
   return parameter(found, name).value;
 }
+/// So many of its own deviations from the truth, at most.
+inline void expect_size(const app::rig::Explanation& found, const std::string& name, double truth,
+                        double deviations) {
+  const app::Parameter p = parameter(found, name);
+  EXPECT_NEAR(p.value, truth, deviations * p.std) << name << '\n' << app::rig::summarize(found);
+}
 
 }  // namespace dampline::test

@@ -200,10 +200,8 @@ TEST(ARig, RelaxesWithTheSizesOfItsSpringAndDashpot) {
         dampline::test::explained(record_of(viscoelastic(stiffness_npm, time_s), 61));
     ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
     ASSERT_EQ(found.steps[0].effect, "viscoelastic") << summarize(found);
-    const Parameter stiffness = dampline::test::parameter(found, "viscoelastic_stiffness");
-    const Parameter time = dampline::test::parameter(found, "viscoelastic_time");
-    EXPECT_NEAR(stiffness.value, stiffness_npm, 2.5 * stiffness.std) << summarize(found);
-    EXPECT_NEAR(time.value, time_s, 2.5 * time.std) << summarize(found);
+    dampline::test::expect_size(found, "viscoelastic_stiffness", stiffness_npm, 2.5);
+    dampline::test::expect_size(found, "viscoelastic_time", time_s, 2.5);
     EXPECT_STREQ(found.verdict(), "explained");
   }
 }

@@ -100,15 +100,6 @@ double sliding_force(const Model& model, double v) {
   return sliding(model, v).dot(model.fit.theta);
 }
 
-Series head_of(Series series, Eigen::Index count) {
-  series.deflection_m.conservativeResize(count);
-  series.velocity_mps.conservativeResize(count);
-  series.force_n.conservativeResize(count);
-  for (Eigen::VectorXd* extra : {&series.accel_mps2, &series.left_out})
-    if (extra->size() > count) extra->conservativeResize(count);
-  return series;
-}
-
 Eigen::Index moving_samples(const Series& series) {
   Eigen::Index out = 0;
   for (Eigen::Index i = 0; i < series.size(); ++i) out += series.why_left_out(i) == 0.0 ? 1 : 0;
@@ -133,7 +124,7 @@ Convergence convergence_of(const Model& model, const std::vector<Series>& record
     double left_s = time_s;
     for (const Series& s : records) {
       const auto count = std::min(s.size(), static_cast<Eigen::Index>(left_s / s.interval_s));
-      Series head = head_of(seen_by(model, s), count);
+      Series head = seen_by(model, s).part(0, count);
       if (moving_samples(head) >= kFewestSamples) seen.push_back(std::move(head));
       left_s -= static_cast<double>(count) * s.interval_s;
     }

@@ -41,7 +41,6 @@ Fit in_full(const State& s, const Candidate& memory) {
   State full = s;
   choose(full, memory, 0.0, 0.0);
   refine_memory(full, full.chosen.back());
-  try_bouc_wen(full, full.chosen.back());
   return judge_chosen(full).fit;
 }
 

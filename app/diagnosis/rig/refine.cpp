@@ -43,9 +43,9 @@ void rename_memory(const State& s, Chosen& memory) {
   if (read.play_share > kPlay) memory.step.effect = memory.candidate.effect = "backlash";
 }
 
-}  // namespace
-
-void refine_memory(State& s, Chosen& memory) {
+/// Three stop operators, their travels half as large again from one to the next, and what the
+/// longest loses with speed on either side, now and soon after breakaway.
+void try_bank(State& s, Chosen& memory) {
   std::vector<BankElement> elements;
   for (const double share : ratios(kBankFrom, kBankTo, kBankStep))
     elements.push_back(add_bank_element(s.library, share * memory.candidate.place));
@@ -76,6 +76,7 @@ void refine_memory(State& s, Chosen& memory) {
   rename_memory(s, memory);
 }
 
+/// One smooth law with two figures instead of a bank, where it leaves clearly less.
 void try_bouc_wen(State& s, Chosen& memory) {
   const Chosen before = memory;
   const bool friction = s.base_friction_left;
@@ -100,6 +101,13 @@ void try_bouc_wen(State& s, Chosen& memory) {
   s.bouc_wen.reset();
   memory = before;
   s.base_friction_left = friction;
+}
+
+}  // namespace
+
+void refine_memory(State& s, Chosen& memory) {
+  try_bank(s, memory);
+  try_bouc_wen(s, memory);
 }
 
 void refine_width(State& s) {

@@ -50,7 +50,6 @@ void take_of_base(State& s, const std::string& effect) {
   chosen.of_base = true;
   if (!is_memory(effect)) return;
   refine_memory(s, chosen);
-  try_bouc_wen(s, chosen);
   chosen.step.effect = chosen.candidate.effect = effect;
 }
 
@@ -65,7 +64,6 @@ void take_first(State& s, const std::vector<Ranked>& order) {
   if (!filtered(s)) try_mass(s);
   if (!is_memory(chosen.step.effect) || s.followed) return;
   refine_memory(s, chosen);
-  try_bouc_wen(s, chosen);
 }
 
 /// One more step; false where nothing passes.

@@ -204,6 +204,14 @@ Eigen::VectorXd attached_accel(const Eigen::VectorXd& x, const Eigen::VectorXd& 
   return out;
 }
 
+Series Series::part(Eigen::Index first, Eigen::Index count) const {
+  Series out = *this;
+  for (Eigen::VectorXd* values : {&out.time_s, &out.deflection_m, &out.velocity_mps, &out.force_n,
+                                  &out.reference_n, &out.accel_mps2, &out.left_out})
+    if (values->size() >= first + count) *values = Eigen::VectorXd{values->segment(first, count)};
+  return out;
+}
+
 void Series::set_motion(const std::vector<core::Motion>& rows) {
   const auto count = static_cast<Eigen::Index>(rows.size());
   for (Eigen::VectorXd* values : {&deflection_m, &velocity_mps, &force_n}) values->resize(count);

@@ -56,6 +56,8 @@ struct Series {
     return left_out.size() == size() ? left_out[i] : 0.0;
   }
   void set_motion(const std::vector<core::Motion>& rows);
+  /// `count` samples from `first` on.
+  [[nodiscard]] Series part(Eigen::Index first, Eigen::Index count) const;
 };
 
 [[nodiscard]] inline Eigen::VectorXd vector_of(const std::vector<double>& values) {

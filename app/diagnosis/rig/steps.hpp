@@ -80,11 +80,9 @@ void take_dominant_spring(State& s);
 
 /// A smooth law of friction between two widths of the grid would leave what looks like an effect.
 void refine_width(State& s);
-/// Three stop operators, their travels half as large again from one to the next, and what the
-/// longest loses with speed on either side, now and soon after breakaway.
+/// Friction with a memory in its full form: a bank of stop operators, or one smooth law where that
+/// leaves clearly less.
 void refine_memory(State& s, Chosen& memory);
-/// One smooth law with two figures instead of a bank, where it leaves clearly less.
-void try_bouc_wen(State& s, Chosen& memory);
 
 /// A linear term that belongs to the rig rather than to the damper stays where it helps.
 void try_linear(State& s, bool& added);

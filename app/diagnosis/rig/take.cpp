@@ -150,21 +150,13 @@ std::vector<Regressor> beside_memory(const State& s, const Judged& now) {
   return columns_of(s, set);
 }
 
-Series part_of(Series series, Eigen::Index first, Eigen::Index count) {
-  for (Eigen::VectorXd* values :
-       {&series.time_s, &series.deflection_m, &series.velocity_mps, &series.force_n,
-        &series.reference_n, &series.accel_mps2, &series.left_out})
-    if (values->size() >= first + count) *values = Eigen::VectorXd{values->segment(first, count)};
-  return series;
-}
-
 /// What the longer part of a record that changes has: the plainest forms hardly tell.
 std::string memory_of_part(const State& s, double at_share) {
   State part = s;
   const Series& record = s.records.front();
   const auto at = static_cast<Eigen::Index>(at_share * static_cast<double>(record.size()));
   const bool tail = at_share < 0.5;
-  part.records = {part_of(record, tail ? at : 0, tail ? record.size() - at : at)};
+  part.records = {record.part(tail ? at : 0, tail ? record.size() - at : at)};
   part.chosen.clear();
   part.bank.clear();
   part.bouc_wen.reset();
@@ -174,7 +166,6 @@ std::string memory_of_part(const State& s, double at_share) {
     if (!is_memory(ranked.candidate->effect)) continue;
     choose(part, Candidate{*ranked.candidate}, 0.0, 0.0);
     refine_memory(part, part.chosen.back());
-    try_bouc_wen(part, part.chosen.back());
     return part.chosen.back().step.effect;
   }
   return {};

@@ -22,7 +22,6 @@ constexpr double kCurveFloor = 0.0025;
 constexpr double kWidthShare = 0.03;  // at the width
 // The 32 Hz scale fits between sticks and sharpens the friction law, but knows nothing of
 // stiffness.
-constexpr ScaleMask kAllScales{true, true, true, true, true};
 constexpr ScaleMask kLongScales{true, true, true, true, false};
 constexpr double kValidStickShare = 0.25;
 // The bent law's level counts from the one share on, alone from the other on.
@@ -40,8 +39,11 @@ constexpr std::size_t kFewestEntries = 4;  // below, a deviation says nothing
 
 double floored(double std, double floor) noexcept { return std::sqrt(std * std + floor * floor); }
 
-double with_floors(const Estimate& e, double share, double of_sticking) noexcept {
-  return floored(floored(e.std, share * e.value), std::max(of_sticking, 0.0) * e.value);
+double beyond(double share, double from) noexcept { return std::max(share - from, 0.0); }
+
+/// `floor`, `of_sticking`: shares of the value.
+double with_floors(const Estimate& e, double floor, double of_sticking) noexcept {
+  return floored(floored(e.std, floor * e.value), of_sticking * e.value);
 }
 
 double stick_share(const VelocityCounts& v) noexcept {
@@ -94,12 +96,12 @@ struct LawResult {
     const double share = stick_share(c.header.velocity);
     out.coulomb = unbiased(c, out.law.width_index, {coulomb, std[Model::kCoulomb]}, share);
     out.coulomb.std =
-        with_floors(out.coulomb, kCoulombFloor, kCoulombSticks * (share - kCoulombSticksFrom));
+        with_floors(out.coulomb, kCoulombFloor, kCoulombSticks * beyond(share, kCoulombSticksFrom));
     out.stiffness = {
         long_law.fit.theta[Model::kStiffness],
         deviations<Model::kUnknowns>(c, long_law.fit, long_law.map)[Model::kStiffness]};
     out.stiffness.std = with_floors(out.stiffness, kStiffnessFloor,
-                                    kStiffnessSticks * (share - kStiffnessSticksFrom));
+                                    kStiffnessSticks * beyond(share, kStiffnessSticksFrom));
     out.width = {out.law.width_mps(), std[Model::kWidthChange] / coulomb * out.law.span_mps()};
     if constexpr (Viscous) out.viscous = {theta[Model::kViscous], std[Model::kViscous]};
     return out;
@@ -168,7 +170,7 @@ void fill_curve(const Context<Entries>& c, const LawProfile<true>& law, Snapshot
     const Estimate f = curve.force(v_mps, law.width_mps(), c.header.curve_nodes_mps);
     const double near = law.width_mps() / v_mps;
     const double sticks = (1.0 + kCurveSticksNear * near) * kCoulombSticks *
-                          std::max(out.stick_share - kCoulombSticksFrom, 0.0);
+                          beyond(out.stick_share, kCoulombSticksFrom);
     const double floor = floored(floored(kCurveFloor, kWidthShare * near), sticks);
     out.curve[i] = {.velocity_mps = v_mps,
                     .force_n = c.mass_kg * f.value,

@@ -59,6 +59,7 @@ class MappedColumns {
 
 /// Which scales take part.
 using ScaleMask = std::array<bool, kScales>;
+inline constexpr ScaleMask kAllScales{true, true, true, true, true};
 
 /// Least squares over all scales, each weighted by the inverse of its own residual variance
 /// (fixed-point iteration, METHODS: feasible generalised least squares).

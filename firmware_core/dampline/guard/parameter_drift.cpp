@@ -12,7 +12,6 @@
 namespace dampline {
 namespace {
 
-constexpr ScaleMask kAllScales{true, true, true, true, true};
 constexpr std::size_t kFewest = 10;  // entries
 constexpr std::size_t kFolds = 5;
 constexpr std::size_t kSide = 2;  // entries before and after a step
