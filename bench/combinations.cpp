@@ -137,9 +137,8 @@ inline Decision decide(const GuardRecord& record) {
                               core.estimator.sample_rate_hz, result);
   const auto explainer = std::make_unique<effect::Explainer>();
   effect::Judgement judgement;
-  effect::judge(run->effects().store(), run->effects().impulses(), run->effects().grids(),
-                {.moving_mass_kg = core.estimator.moving_mass_kg}, circumstances, *explainer,
-                judgement);
+  effect::judge(run->effects().sums(), {.moving_mass_kg = core.estimator.moving_mass_kg},
+                circumstances, *explainer, judgement);
   Decision out;
   out.data = result.faults;
   for (const app::FaultFinding& fault : result.faults.list) out.faults.push_back(fault.name);

@@ -49,6 +49,7 @@ PARTS = {
     "noise": "Noise on the motion of a driven mass",
     "diagnosis_pairs": "Two missing effects at once",
     "guards": "Faults",
+    "sensors": "Coarse, noisy, slow and unfiltered sensors",
     "combinations": "Faults beside effects, faults and changed parameters",
     "drifting": "Parameters that change",
     "months": "The live alarm over months",

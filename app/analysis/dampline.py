@@ -166,6 +166,12 @@ _LONG_SCALES = 4
 # left of level and stiffness for each unit of the share, and from where on.
 _BENDS = 0.15, 0.25
 _STICKING = (0.05, 0.12), (0.32, 0.18)
+# The velocity's own error: widths of exact sensors' law, m/s and m/s Hz^3; what goes with the part
+# between samples below so many Hz; bias of level and stiffness for each unit of the share, and how
+# well it is known.
+_EXACT_WIDTH = 1.9e-3, 1.0e4
+_LOST, _AMPLE_HZ = 0.004, 300.0
+_LEVEL_BIAS, _STIFFNESS_BIAS = (0.20, 0.40), (0.30, 1.0)
 
 Factors = collections.namedtuple("Factors", "factor rows blocks")
 Factors.__doc__ = """Of one stretch: `factor` (5, 21, 21), the upper triangles R of the scales; `rows`
@@ -193,17 +199,26 @@ class State:
         sticks = [factor * max(self.stick_share - start, 0.0) for factor, start in _STICKING]
         level_std = np.hypot(level_std, level * np.hypot(1e-3, sticks[0]))
         stiffness_std = np.hypot(long_std[1], stiffness * np.hypot(3e-3, sticks[1]))
+        below, above = _neighbours(law.width)
+        span = _WIDTHS_MPS[above] - _WIDTHS_MPS[below]
+        width = _WIDTHS_MPS[law.width] + law.theta[-1] / coulomb * span
+        share, lost = self._velocity_error(width)
+        bias = _LEVEL_BIAS[0] * share
+        factor = (1.0 + lost) / (1.0 + bias)
+        level, level_std = factor * level, np.hypot(
+            factor * level_std, np.hypot(_LEVEL_BIAS[1] * bias, lost) * factor * level)
+        bias = _STIFFNESS_BIAS[0] * share
+        factor = 1.0 + bias
+        stiffness, stiffness_std = factor * stiffness, np.hypot(
+            factor * stiffness_std, np.hypot(_STIFFNESS_BIAS[1] * bias, lost) * factor * stiffness)
         k = moving_mass_kg * ratio**2
         out = {"coulomb": Estimate(moving_mass_kg * level, moving_mass_kg * level_std, "N"),
                "stiffness": Estimate(k * stiffness, k * stiffness_std, "N/m")}
         if viscous:
-            floor = 3e-3 * coulomb / self.velocity_rms_mps
+            floor = 3e-3 * level / self.velocity_rms_mps
             out["viscous"] = Estimate(moving_mass_kg * ratio * law.theta[2],
                                       moving_mass_kg * ratio * np.hypot(std[2], floor), "N s/m")
-        below, above = _neighbours(law.width)
-        span = (_WIDTHS_MPS[above] - _WIDTHS_MPS[below]) / ratio
-        out["law_width"] = Estimate(_WIDTHS_MPS[law.width] / ratio + law.theta[-1] / coulomb * span,
-                                    std[-1] / coulomb * span, "m/s")
+        out["law_width"] = Estimate(width / ratio, std[-1] / coulomb * span / ratio, "m/s")
         return out
 
     @property
@@ -215,6 +230,13 @@ class State:
     def stick_share(self):
         """Of the samples that moved."""
         return self.sticking / self.moving
+
+    def _velocity_error(self, width_mps):
+        """Share by which the law is wider than that of exact sensors, of the motion; and what of the
+        level goes with the velocity's part between samples."""
+        exact = _EXACT_WIDTH[0] + _EXACT_WIDTH[1] / self.sample_rate_hz**3
+        share = max(width_mps**2 - exact**2, 0.0) / self.velocity_rms_mps**2
+        return share, _LOST * max((_AMPLE_HZ / self.sample_rate_hz)**2 - 1.0, 0.0)
 
     def _level(self, law, std, viscous):
         """The level of the law, or, the more the truck sticks, of the bent one, and its deviation."""

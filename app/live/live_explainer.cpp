@@ -57,6 +57,7 @@ void LiveExplainer::take_sums(std::int64_t tick) noexcept {
   } else if (turn == Turn::kCopy && copy_->step(sums.store())) {
     impulses_ = sums.impulses();
     grids_ = sums.grids();
+    velocity_ = sums.velocity_error();
     copied_s_ = run_.time_s();
     turn_.store(Turn::kCircumstances, std::memory_order_relaxed);
   } else if (turn == Turn::kCircumstances) {
@@ -106,8 +107,8 @@ void LiveExplainer::judge() {
     needless_rows_ = copy_->store().rows();
   }
   out.needless = needless_;
-  if (!judge_live({copy_->store(), impulses_, grids_}, {config_, guarded_}, floor_, *explainer_,
-                  out))
+  if (!judge_live({copy_->store(), impulses_, grids_, velocity_}, {config_, guarded_}, floor_,
+                  *explainer_, out))
     return;
   needless_ = out.needless;
   const double of_s = other_.look({config_, guarded_}, floor_, copied_s_, *explainer_, out);
@@ -152,10 +153,8 @@ void LiveExplainer::conclude(RunResult& result) {
   guarded_ = guarded_noise(run_.core());
   floor_.follow();
   floor_.forget();
-  const effect::Diagnosis& sums = run_.core().effects();
   const LiveKnown known{config_, guarded_};
-  if (!judge_live({sums.store(), sums.impulses(), sums.grids()}, known, floor_, *explainer_, found))
-    return;
+  if (!judge_live(run_.core().effects().sums(), known, floor_, *explainer_, found)) return;
   other_.forget();
   other_.look(known, floor_, run_.time_s(), *explainer_, found);
   add(std::move(found), result);

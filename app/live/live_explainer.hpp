@@ -65,6 +65,7 @@ class LiveExplainer {
   std::unique_ptr<Statistics> statistics_;
   effect::ImpulseMeter impulses_;
   effect::Grids grids_;
+  VelocityError velocity_;
   effect::Circumstances circumstances_;  // of the copy
   GuardedNoise guarded_;
   double copied_s_{0.0};  // of the record, when the copy was whole

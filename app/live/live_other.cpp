@@ -9,11 +9,10 @@
 
 namespace dampline::app {
 
-bool judge_live(const LiveSums& sums, const LiveKnown& known, LiveFloor& floor,
+bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& floor,
                 effect::Explainer& explainer, Explained& out) {
   while (true) {
-    effect::judge(sums.store, sums.impulses, sums.grids, explainer_config(known.config, out),
-                  out.circumstances, explainer, out);
+    effect::judge(sums, explainer_config(known.config, out), out.circumstances, explainer, out);
     if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
     floor.hold_against(sums.store, known.guarded, explainer, out);
     const effect::Effect needless = needless_effect(out.explanation);
@@ -48,10 +47,6 @@ std::unique_ptr<DiagnosisRun> run_of(const IdentifierConfig& core, const effect:
   return run;
 }
 
-LiveSums sums_of(const DiagnosisRun& run) {
-  return {run.effects().store(), run.effects().impulses(), run.effects().grids()};
-}
-
 /// The run's circumstances, and nothing found yet.
 Explained about(const Explained& run) {
   Explained out;
@@ -82,7 +77,7 @@ std::optional<Explained> LiveOther::find(const LiveKnown& known, const std::vect
   LiveFloor floor{core_.estimator};
   for (const Sample& sample : samples) floor.follow(sample);
   Explained without = about(run);
-  if (!judge_live(sums_of(*first), known, floor, explainer, without)) return std::nullopt;
+  if (!judge_live(first->effects().sums(), known, floor, explainer, without)) return std::nullopt;
   with.without_other_nmse = base_error(without.explanation);
   IdentifierConfig core = core_;
   core.estimator.far_mass_kg = with.other->mass_kg.value;
@@ -91,7 +86,7 @@ std::optional<Explained> LiveOther::find(const LiveKnown& known, const std::vect
   for (const Sample& sample : samples) beside.push_back(with.other->beside(sample));
   const auto second = run_of(core, {}, beside, [](const auto&...) {});
   floor.forget();
-  if (!judge_live(sums_of(*second), known, floor, explainer, with)) return std::nullopt;
+  if (!judge_live(second->effects().sums(), known, floor, explainer, with)) return std::nullopt;
   return other_leaves_less(with, without) ? std::optional{std::move(with)} : std::nullopt;
 }
 

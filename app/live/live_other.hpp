@@ -12,19 +12,13 @@
 
 namespace dampline::app {
 
-/// What an explanation is made of.
-struct LiveSums {
-  const effect::GramStore& store;
-  const effect::ImpulseMeter& impulses;
-  const effect::Grids& grids;
-};
 struct LiveKnown {
   const Config& config;
   const GuardedNoise& guarded;
 };
 
 /// With the floor, and without what that shows to be needless. False: there is too little yet.
-[[nodiscard]] bool judge_live(const LiveSums& sums, const LiveKnown& known, LiveFloor& floor,
+[[nodiscard]] bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& floor,
                               effect::Explainer& explainer, Explained& out);
 
 /// The truck under the other end of the body in a live run's explanation: now and then, the motion

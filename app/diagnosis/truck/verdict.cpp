@@ -61,8 +61,7 @@ effect::ExplainerConfig explainer_config(const Config& config, const Explained& 
 
 bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
                 effect::Explainer& explainer, Explained& out) {
-  effect::judge(diagnosis.store(), diagnosis.impulses(), diagnosis.grids(),
-                explainer_config(config, out), out.circumstances, explainer, out);
+  effect::judge(diagnosis.sums(), explainer_config(config, out), out.circumstances, explainer, out);
   return out.explanation.conclusion != effect::Conclusion::kNotReady;
 }
 

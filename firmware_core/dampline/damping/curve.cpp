@@ -58,10 +58,9 @@ template CurveFit CurveFit::make(const ScaleFactors&, EntryList, const LawProfil
 template CurveFit CurveFit::make(const ScaleFactors&, GroupedList, const LawProfile<true>&,
                                  const ScaleMask&, const CurveNodes&) noexcept;
 
-Estimate CurveFit::force(double velocity_mps, double width_mps,
-                         const CurveNodes& nodes_mps) const noexcept {
+Estimate CurveFit::force(double velocity_mps, const CurveNodes& nodes_mps) const noexcept {
   WeightedFit<kUnknowns>::Vector gradient = WeightedFit<kUnknowns>::Vector::Zero();
-  gradient[kJump] = smooth_sign(velocity_mps, width_mps);
+  gradient[kJump] = 1.0;
   double left_mps = 0.0;
   for (std::size_t i = 0; i < kCurveSegments; ++i) {
     const double length_mps = i + 1 < kCurveSegments ? nodes_mps[i] - left_mps : 1e3;

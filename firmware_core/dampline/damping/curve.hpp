@@ -20,9 +20,9 @@ struct CurveFit {
   static CurveFit make(const ScaleFactors& total, Entries entries, const LawProfile<true>& law,
                        const ScaleMask& mask, const CurveNodes& nodes_mps) noexcept;
 
-  /// Force per unit of mass at a positive velocity, and its standard deviation.
-  [[nodiscard]] Estimate force(double velocity_mps, double width_mps,
-                               const CurveNodes& nodes_mps) const noexcept;
+  /// Force per unit of mass at a positive velocity, and its standard deviation: the jump counts
+  /// whole there, since the width is mostly an error of the velocity.
+  [[nodiscard]] Estimate force(double velocity_mps, const CurveNodes& nodes_mps) const noexcept;
 };
 
 }  // namespace dampline

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "dampline/basis/smooth_sign.hpp"
 #include "dampline/damping/curve.hpp"
 #include "dampline/estimate/law_profile.hpp"
+#include "dampline/estimate/velocity_error.hpp"
 
 namespace dampline {
 namespace {
@@ -20,6 +22,7 @@ constexpr double kViscousFloor = 0.0030;  // of Fc / v_rms
 // Of a curve: the velocity's own error bends it, the more the nearer its width.
 constexpr double kCurveFloor = 0.0025;
 constexpr double kWidthShare = 0.03;  // at the width
+constexpr double kUnseen = 0.15;      // of the force that the width hides
 // The 32 Hz scale fits between sticks and sharpens the friction law, but knows nothing of
 // stiffness.
 constexpr ScaleMask kLongScales{true, true, true, true, false};
@@ -33,7 +36,7 @@ constexpr double kCoulombSticksFrom = 0.12;
 constexpr double kCurveSticksNear = 2.0;  // so many times more where a node is near the width
 constexpr double kStiffnessSticks = 0.32;
 constexpr double kStiffnessSticksFrom = 0.18;
-constexpr double kValidWidthMps = 3.0e-3;
+constexpr double kValidWidthMps = 10.0e-3;
 constexpr std::size_t kFolds = 5;
 constexpr std::size_t kFewestEntries = 4;  // below, a deviation says nothing
 
@@ -50,6 +53,10 @@ double stick_share(const VelocityCounts& v) noexcept {
   return v.moving > 0 ? static_cast<double>(v.sticking) / static_cast<double>(v.moving) : 0.0;
 }
 
+double velocity_rms_mps(const VelocityCounts& v) noexcept {
+  return v.moving > 0 ? std::sqrt(v.sum_squares / static_cast<double>(v.moving)) : 0.0;
+}
+
 template <class Entries>
 struct Context {
   const StatisticsHeader& header;
@@ -57,6 +64,7 @@ struct Context {
   Entries entries;
   double mass_kg;
   double blocks_factor;
+  VelocityError velocity;
 };
 
 /// What one model says: friction from all scales, stiffness from the long ones.
@@ -102,7 +110,10 @@ struct LawResult {
         deviations<Model::kUnknowns>(c, long_law.fit, long_law.map)[Model::kStiffness]};
     out.stiffness.std = with_floors(out.stiffness, kStiffnessFloor,
                                     kStiffnessSticks * beyond(share, kStiffnessSticksFrom));
-    out.width = {out.law.width_mps(), std[Model::kWidthChange] / coulomb * out.law.span_mps()};
+    const double width_mps = out.law.width_mps();
+    out.coulomb = c.velocity.coulomb(out.coulomb, width_mps);
+    out.stiffness = c.velocity.stiffness(out.stiffness, width_mps);
+    out.width = {width_mps, std[Model::kWidthChange] / coulomb * out.law.span_mps()};
     if constexpr (Viscous) out.viscous = {theta[Model::kViscous], std[Model::kViscous]};
     return out;
   }
@@ -167,14 +178,17 @@ void fill_curve(const Context<Entries>& c, const LawProfile<true>& law, Snapshot
   out.curve_std_at_zero_n = c.mass_kg * floored(c.blocks_factor * jump_std, kCoulombFloor * jump);
   for (std::size_t i = 0; i < kCurveSegments; ++i) {
     const double v_mps = c.header.curve_nodes_mps[i];
-    const Estimate f = curve.force(v_mps, law.width_mps(), c.header.curve_nodes_mps);
+    const Estimate f = curve.force(v_mps, c.header.curve_nodes_mps);
     const double near = law.width_mps() / v_mps;
+    const double unseen = kUnseen * (1.0 - smooth_sign(v_mps, law.width_mps()));
     const double sticks = (1.0 + kCurveSticksNear * near) * kCoulombSticks *
                           beyond(out.stick_share, kCoulombSticksFrom);
-    const double floor = floored(floored(kCurveFloor, kWidthShare * near), sticks);
+    const double floor = floored(floored(floored(kCurveFloor, kWidthShare * near), sticks), unseen);
+    const Estimate stated = c.velocity.coulomb(
+        {f.value, floored(c.blocks_factor * f.std, floor * f.value)}, law.width_mps());
     out.curve[i] = {.velocity_mps = v_mps,
-                    .force_n = c.mass_kg * f.value,
-                    .std_n = c.mass_kg * floored(c.blocks_factor * f.std, floor * f.value),
+                    .force_n = c.mass_kg * stated.value,
+                    .std_n = c.mass_kg * stated.std,
                     .samples = c.header.velocity.positive[i]};
     out.samples_negative[i] = c.header.velocity.negative[i];
   }
@@ -187,13 +201,13 @@ Context<Entries> context_of(const StatisticsHeader& header, const ScaleFactors& 
           .total = total,
           .entries = entries,
           .mass_kg = config.moving_mass_kg,
-          .blocks_factor = short_record_factor(static_cast<double>(entries.size()))};
+          .blocks_factor = short_record_factor(static_cast<double>(entries.size())),
+          .velocity = {header.sample_rate_hz, velocity_rms_mps(header.velocity)}};
 }
 
 void fill_motion(const StatisticsHeader& header, Snapshot& out) noexcept {
-  const VelocityCounts& v = header.velocity;
-  if (v.moving > 0) out.velocity_rms_mps = std::sqrt(v.sum_squares / static_cast<double>(v.moving));
-  out.stick_share = stick_share(v);
+  out.velocity_rms_mps = velocity_rms_mps(header.velocity);
+  out.stick_share = stick_share(header.velocity);
   out.noise_mps2 = header.noise_mps2;
 }
 

@@ -8,9 +8,18 @@
 #include "dampline/effect/laws.hpp"
 #include "dampline/effect/modes.hpp"
 #include "dampline/effect/rows.hpp"
+#include "dampline/estimate/velocity_error.hpp"
 #include "dampline/motion/anti_alias.hpp"
 
 namespace dampline::effect {
+
+/// What an explanation is made of.
+struct Sums {
+  const GramStore& store;
+  const ImpulseMeter& impulses;
+  const Grids& grids;
+  VelocityError velocity;
+};
 
 /// The sums that judge every candidate effect, gathered beside the estimate: the Estimator's
 /// companion, fed with each sample and with what the Estimator made of it. Its size is fixed;
@@ -46,6 +55,12 @@ class Diagnosis {
   /// Means over the moving samples.
   [[nodiscard]] double velocity_rms_mps() const noexcept;
   [[nodiscard]] double deflection_rms_m() const noexcept;
+  [[nodiscard]] VelocityError velocity_error() const noexcept {
+    return {sample_rate_hz_, velocity_rms_mps()};
+  }
+  [[nodiscard]] Sums sums() const noexcept {
+    return {store_, impulses_, grids(), velocity_error()};
+  }
 
  private:
   void take(const Motion& motion) noexcept;

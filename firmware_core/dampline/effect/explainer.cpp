@@ -245,10 +245,11 @@ void Explainer::backward(Explanation& out, ModelFit& now) noexcept {
   }
 }
 
-Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter,
-                               const Grids& grids, const ExplainerConfig& config) noexcept {
+Explanation Explainer::explain(const Sums& sums, const ExplainerConfig& config) noexcept {
   Explanation out;
-  out.grids = grids_ = grids;
+  out.grids = grids_ = sums.grids;
+  detail_.velocity = sums.velocity;
+  const GramStore& store = sums.store;
   if (store.count() < kFewestEntries || !evidence_.load(store)) return out;
   allowed_ = config.allowed;
   if (config.base_viscous) {
@@ -272,7 +273,7 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
     if (readjust(out, now)) now = settle(store, out.model);
   }
   const bool impulses = allowed_[static_cast<std::size_t>(Effect::kImpulsiveInput)];
-  if (out.step_count == 0 && impulses) add_impulses(meter, now, out);
+  if (out.step_count == 0 && impulses) add_impulses(sums.impulses, now, out);
   backward(out, now);
   do {
     out.final = settle(store, out.model);
@@ -280,9 +281,8 @@ Explanation Explainer::explain(const GramStore& store, const ImpulseMeter& meter
   } while (drop_worthless(out));
   out.weight = evidence_.weight;
   out.target = evidence_.total.at(kTarget, kTarget);
-  for (std::size_t i = 0; i + out.base_count < out.model.count; ++i) {
+  for (std::size_t i = 0; i + out.base_count < out.model.count; ++i)
     refine(out.model, out.base_count + i, out.final, out.step[i]);
-  }
   look_into(store, out.model, config.moving_mass_kg);
   describe(detail_, out);
   if (out.step_count > 0)

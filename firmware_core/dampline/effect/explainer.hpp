@@ -36,11 +36,10 @@ class Explainer {
 
   [[nodiscard]] Explanation explain(const Diagnosis& diagnosis,
                                     const ExplainerConfig& config) noexcept {
-    return explain(diagnosis.store(), diagnosis.impulses(), diagnosis.grids(), config);
+    return explain(diagnosis.sums(), config);
   }
   /// The same of what was copied out of a Diagnosis that goes on.
-  [[nodiscard]] Explanation explain(const GramStore& store, const ImpulseMeter& impulses,
-                                    const Grids& grids, const ExplainerConfig& config) noexcept;
+  [[nodiscard]] Explanation explain(const Sums& sums, const ExplainerConfig& config) noexcept;
   /// NMSE of another record's rows by models that were fitted elsewhere; 0 when it has too few.
   /// Precondition: the other Diagnosis has the scale of the one that was explained.
   struct Prediction {

@@ -59,11 +59,10 @@ bool drift_explains_more(const ParameterDrift& drift, const Explanation& explana
   return explanation.step_count == 0 || drift.gain > explanation.step[0].gain + kMoreGain;
 }
 
-void judge(const GramStore& store, const ImpulseMeter& impulses, const Grids& grids,
-           ExplainerConfig config, const Circumstances& circumstances, Explainer& explainer,
-           Judgement& out) noexcept {
+void judge(const Sums& sums, ExplainerConfig config, const Circumstances& circumstances,
+           Explainer& explainer, Judgement& out) noexcept {
   disallow_mimics(circumstances.faults, config);
-  out.explanation = explainer.explain(store, impulses, grids, config);
+  out.explanation = explainer.explain(sums, config);
   if (out.explanation.conclusion == Conclusion::kNotReady) return;
   out.withheld = forbids_naming(circumstances.faults);
   name_nothing_impossible(out.explanation);

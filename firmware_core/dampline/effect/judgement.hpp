@@ -47,8 +47,7 @@ void name_nothing_impossible(Explanation& explanation) noexcept;
 
 /// Judges a record's sums: of a file, and of a live run at any moment. Where the circumstances
 /// forbid it no effect is named, and what is left is unexplained. Mimics leave the candidates.
-void judge(const GramStore& store, const ImpulseMeter& impulses, const Grids& grids,
-           ExplainerConfig config, const Circumstances& circumstances, Explainer& explainer,
-           Judgement& out) noexcept;
+void judge(const Sums& sums, ExplainerConfig config, const Circumstances& circumstances,
+           Explainer& explainer, Judgement& out) noexcept;
 
 }  // namespace dampline::effect

@@ -331,8 +331,14 @@ BaseParameters base_in(const Detail& d, List& list) noexcept {
   const LawErrors errors = errors_beside(d.model);
   list.add("stiffness", all);
   list.add("law_width", Uncertain::of(d.fit, ModelFit::kWidthChange));
-  return {list.add("coulomb", d.mass_kg * level(d.model, d.fit), errors.coulomb),
-          {slow.value, std::hypot(d.factor * slow.std(d.slow), errors.stiffness * slow.value)}};
+  const Uncertain friction = d.mass_kg * level(d.model, d.fit);
+  // Of the friction, what has a width of v = 0; memory has none.
+  const double jumps = d.mass_kg * d.fit.theta[ModelFit::kCoulomb] / friction.value;
+  const double width_mps = d.fit.width_mps * std::sqrt(std::clamp(jumps, 0.0, 1.0));
+  return {d.velocity.coulomb(list.add("coulomb", friction, errors.coulomb), width_mps),
+          d.velocity.stiffness(
+              {slow.value, std::hypot(d.factor * slow.std(d.slow), errors.stiffness * slow.value)},
+              width_mps)};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "dampline/effect/conclusion.hpp"
 #include "dampline/effect/model_fit.hpp"
+#include "dampline/estimate/velocity_error.hpp"
 
 namespace dampline::effect {
 
@@ -51,6 +52,7 @@ struct Detail {
   ModelFit slow;       ///< without the shortest scale, which knows nothing of stiffness
   double factor{1.0};  ///< on deviations, for few entries
   double mass_kg{0.0};
+  VelocityError velocity;
 };
 
 /// Friction and spring of a model.

@@ -27,6 +27,9 @@ constexpr std::array<std::size_t, kChannels> kNoiseBlocks{3, 8, 8};  // the whee
 // Over the median. Of the frame the power of a block scatters by a third where friction holds it,
 // and a median of the first five may be half of what it should be.
 constexpr std::array<double, 2> kBurstRatio{6.0, 10.0};  // frame, wheelsets: they scatter more
+// Over the median, of the scatter of one block. A filter with a high corner leaves friction's own
+// fast part in the band, and the noise beside it may come out as nothing in half of the blocks.
+constexpr double kBurstScatter = 8.0;
 constexpr double kNoisy = 4.0;  // over the usual noise of the wheelsets: no block to judge gain by
 constexpr double kWhite = 1.4;
 // Of the wheelsets' incoherent power: it is known that well in many blocks and in one.
@@ -283,7 +286,9 @@ void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
   const BlockSeries& series = noise_[which];
   if (series.size() < kBurstBlocks) return;
   const double declared = which == 0 ? noise_limit(0) : noise_limit(1) + noise_limit(2);
-  const double limit = std::max(kBurstRatio[which] * series.median(), declared);
+  const double usual = series.median();
+  const double limit =
+      std::max({kBurstRatio[which] * usual, usual + kBurstScatter * series.scatter(), declared});
   // The newest waits: what else spoils it may not be known yet.
   for (std::size_t i = 0; i + 1 < series.size(); ++i) {
     if (series[i] <= limit || series.tick(i) <= burst_tick_[which]) continue;

@@ -2,6 +2,7 @@
 #include "dampline/motion/anti_alias.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "dampline/numeric/cholesky.hpp"
@@ -17,18 +18,27 @@ constexpr double kHighestLifted = 0.4;  // cycles per sample
 
 /// Part of a Butterworth filter's loss, and a raised cosine down to zero above the edge, so
 /// that noise is not amplified.
-double lift(double relative, int order, double beyond) noexcept {
+double lift(double relative, int order, double share, double beyond) noexcept {
   const double loss = std::sqrt(butterworth_loss(relative, order));
-  return std::pow(loss, VelocityLift::kShareOfLoss) * (0.5 + 0.5 * std::cos(kPi * beyond));
+  return std::pow(loss, share) * (0.5 + 0.5 * std::cos(kPi * beyond));
 }
 
 }  // namespace
+
+double VelocityLift::share_of_loss(double corner_hz) noexcept {
+  constexpr double kHighCornerHz = 100.0;
+  constexpr double kLowCornerHz = 70.0;
+  const double low =
+      std::clamp((kHighCornerHz - corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
+  return std::lerp(0.22, 1.0, low);
+}
 
 VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz) noexcept {
   taps_[kHalf] = 1.0;
   if (!(config.corner_hz > 0.0)) return;
   const double corner = config.corner_hz / sample_rate_hz;
   const double edge = std::fmin(corner, kHighestLifted);
+  const double share = share_of_loss(config.corner_hz);
   // Least squares over the cosines of a symmetric filter, exact at zero frequency.
   using Basis = Eigen::Matrix<double, kHalf + 1, 1>;
   Eigen::Matrix<double, kHalf + 1, kHalf + 1> normal;
@@ -41,7 +51,7 @@ VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz)
     Basis cosine;
     for (int k = 0; k <= kHalf; ++k) cosine[k] = std::cos(2.0 * kPi * f * k);
     normal += weight * cosine.lazyProduct(cosine.transpose());
-    right += weight * lift(f / corner, config.order, beyond) * cosine;
+    right += weight * lift(f / corner, config.order, share, beyond) * cosine;
   }
   const Basis fit = solve_cholesky<kHalf + 1>(normal, right);
   taps_[kHalf] = fit[0];
