@@ -54,6 +54,64 @@ TEST(Decimator, KeepsSlowTonesWithTheirPhaseAndTheMean) {
   }
 }
 
+/// Modified Bessel function of order 0, by its series.
+double bessel_i0(double x) {
+  double term = 1.0;
+  double sum = 1.0;
+  for (int k = 1; k < 60; ++k) {
+    term *= x / (2.0 * k) * (x / (2.0 * k));
+    sum += term;
+  }
+  return sum;
+}
+
+// A single sample comes out as the filter itself, every factor-th tap of it.
+TEST(Decimator, IsTheSincUnderKaisersWindow) {
+  for (const int factor : {2, 3, 5}) {
+    const int half = 48 * factor;
+    const auto tap = [&](int i) {
+      const double place = i / (half + 1.0);
+      const double x = 2.0 * M_PI * 0.48 / factor * i;
+      return (i == 0 ? 1.0 : std::sin(x) / x) * bessel_i0(5.65 * std::sqrt(1.0 - place * place));
+    };
+    double sum = 0.0;
+    for (int i = -half; i <= half; ++i) sum += tap(i);
+    const std::int64_t pulse = 200 * factor + 1;
+    Decimator<26> decimator{factor};
+    int seen = 0;
+    for (std::int64_t tick = 0; tick < 400 * factor; ++tick) {
+      Sample in{.tick = tick};
+      in.accel_mps2[2] = tick == pulse ? 1.0 : 0.0;
+      in.extra_mps2[1] = tick == pulse ? 2.0F : 0.0F;
+      Sample out;
+      if (!decimator.take(in, out)) continue;
+      const auto away = static_cast<int>(out.tick * factor - pulse);
+      const double expected = std::abs(away) <= half ? tap(away) / sum : 0.0;
+      seen += expected != 0.0 ? 1 : 0;
+      EXPECT_NEAR(out.accel_mps2[2], expected, 1e-13) << away << " of " << factor;
+      EXPECT_NEAR(out.extra_mps2[1], 2.0 * expected, 1e-7);
+      EXPECT_EQ(out.accel_mps2[0], 0.0);
+    }
+    EXPECT_EQ(seen, 96);
+  }
+}
+
+TEST(Decimator, OfOneHandsSamplesOnAsTheyAre) {
+  Decimator<2> decimator{1};
+  for (std::int64_t tick = 7; tick < 12; ++tick) {
+    Sample out;
+    ASSERT_TRUE(decimator.take(tone(tick, 20.0), out));
+    EXPECT_EQ(out.tick, tick);
+    EXPECT_EQ(out.accel_mps2, tone(tick, 20.0).accel_mps2);
+  }
+}
+
+TEST(Decimator, BeginsWhereTheFilterLiesInTheRecord) {
+  const auto out = decimated(tones(20.0));
+  EXPECT_EQ(out.front().tick, 48);
+  EXPECT_EQ(out.back().tick, (1499 - 48 * kFactor) / kFactor);
+}
+
 TEST(Decimator, LeavesNoAliases) {
   for (const double hz : {0.5 * kRecordHz / kFactor + 0.5, 240.0, 333.3, 490.0})
     for (const Sample& sample : decimated(tones(hz)))

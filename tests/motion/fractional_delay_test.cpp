@@ -42,6 +42,13 @@ TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
   }
 }
 
+TEST(Blackman, FallsFromOneToNothingAtTheEnds) {
+  EXPECT_NEAR(blackman(0.0), 1.0, 1e-15);
+  EXPECT_NEAR(blackman(0.5), 0.42 - 0.08, 1e-15);
+  EXPECT_NEAR(blackman(-1.0 / 3.0), 0.42 + 0.25 - 0.04, 1e-15);
+  for (const double beyond : {-1.5, -1.0, 1.0, 1.2}) EXPECT_EQ(blackman(beyond), 0.0);
+}
+
 // What a single sample becomes is the filter itself.
 TEST(FractionalDelay, IsTheSincWithBlackmansWeights) {
   constexpr double kLate = 0.4;  // samples
@@ -59,6 +66,15 @@ TEST(FractionalDelay, IsTheSincWithBlackmansWeights) {
     if (!out) continue;
     const auto away = static_cast<int>(kPulse - out->tick);
     EXPECT_NEAR(out->accel_mps2[2], std::abs(away) <= kHalf ? tap(away) / sum : 0.0, 1e-12) << away;
+  }
+}
+
+TEST(FractionalDelay, OfNothingIsAPureDelay) {
+  FractionalDelay alignment{{1, 0.0}, kTruckRateHz};
+  for (std::int64_t tick = 1; tick < 100; ++tick) {
+    const auto out = alignment.next(sample_at(tick, 0.0));
+    if (!out) continue;
+    EXPECT_NEAR(out->accel_mps2[1], sample_at(out->tick, 0.0).accel_mps2[1], 1e-12);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "dampline/motion/butterworth.hpp"
 
@@ -89,6 +90,66 @@ TEST(FrameNoise, IsTheWhitePartAndNotWhatLeapsOfFrictionLeave) {
     EXPECT_NEAR(noise_of(0.3, noise_mps2, 300.0) / noise_mps2, 1.0, 0.06) << noise_mps2;
   }
   EXPECT_LT(noise_of(0.3, 0.0, 300.0), 0.003);
+}
+
+/// A sample of this height in every 512, on top of something else.
+template <class Motion>
+double noise_of_pulses(double height_mps2, const AntiAliasConfig& filter, Motion motion) {
+  FrameNoise meter{Frame::kRateHz, filter};
+  for (std::int64_t i = 1; i <= 100 * 512 + 256; ++i) {
+    const double pulse = i % 512 == 65 ? height_mps2 : 0.0;
+    meter.take({.tick = i, .accel_mps2 = {pulse + motion(i), 0.0, 0.0}});
+  }
+  return meter.noise_mps2();
+}
+
+// The power of single samples is the same at all frequencies: height^2 / 512 on average.
+TEST(FrameNoise, IsExactForSingleSamplesWhateverTheSlowMotion) {
+  const double expected = 0.5 / std::sqrt(512.0);
+  const auto slow = [](std::int64_t i) {
+    const double t = static_cast<double>(i) / Frame::kRateHz;
+    return 9.81 + 3.0 * std::sin(2.0 * std::numbers::pi * 3.3 * t);
+  };
+  for (const double corner_hz : {0.0, 60.0, 100.0, 400.0}) {
+    const AntiAliasConfig filter{.corner_hz = corner_hz};
+    EXPECT_NEAR(noise_of_pulses(0.5, filter, [](std::int64_t) { return 0.0; }), expected,
+                1e-4 * expected);
+    EXPECT_NEAR(noise_of_pulses(0.5, filter, slow), expected, 2e-3 * expected) << corner_hz;
+  }
+}
+
+/// One period of 512 samples, even about its middle, with a power of `white` and of what leaps
+/// leave: 1 / f^2 behind the filter, and the same of what lies beyond half the rate.
+std::vector<double> period_of(double white, double folded, const AntiAliasConfig& filter) {
+  const auto power = [&](double hz) {
+    const double loss =
+        filter.corner_hz > 0.0 ? 1.0 + std::pow(hz / filter.corner_hz, 2 * filter.order) : 1.0;
+    return 1e4 / (loss * hz * hz);
+  };
+  std::vector<double> out(512, 0.0);
+  for (int k = 60; k < 256; ++k) {  // below lies nothing that is looked at
+    const double hz = Frame::kRateHz * k / 512.0;
+    const double size = std::sqrt(white + folded * (power(hz) + power(Frame::kRateHz - hz)));
+    for (int n = 0; n < 512; ++n)
+      out[static_cast<std::size_t>(n)] +=
+          2.0 / 512.0 * size * std::cos(2.0 * std::numbers::pi * k * (n - 256) / 512.0);
+  }
+  return out;
+}
+
+TEST(FrameNoise, TakesOutWhatIsFilteredAndFolded) {
+  for (const AntiAliasConfig filter : {AntiAliasConfig{}, AntiAliasConfig{.corner_hz = 0.0},
+                                       AntiAliasConfig{.corner_hz = 120.0, .order = 2}}) {
+    const auto period = period_of(1.0, 3.0, filter);
+    const auto alone = period_of(1.0, 0.0, filter);
+    const auto noise = [&](const std::vector<double>& of) {
+      FrameNoise meter{Frame::kRateHz, filter};
+      for (std::int64_t i = 1; i <= 100 * 512 + 256; ++i)
+        meter.take({.tick = i, .accel_mps2 = {of[static_cast<std::size_t>(i % 512)], 0.0, 0.0}});
+      return meter.noise_mps2();
+    };
+    EXPECT_NEAR(noise(period) / noise(alone), 1.0, 0.02) << filter.corner_hz;
+  }
 }
 
 TEST(FrameNoise, NeedsThirtySixSegmentsWithoutAGap) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "dampline/motion/anti_alias.hpp"
 #include "tests/steps.hpp"
@@ -23,6 +26,51 @@ TEST(VelocityLift, DoesNothingWhereNoFilterIsKnown) {
   const VelocityLift lift{{.corner_hz = 0.0}, 300.0};
   for (int k = -VelocityLift::kHalf; k <= VelocityLift::kHalf; ++k)
     EXPECT_EQ(lift.taps()[static_cast<std::size_t>(k + VelocityLift::kHalf)], k == 0 ? 1.0 : 0.0);
+}
+
+TEST(VelocityLift, LiftsForAnyCornerThatIsKnown) {
+  EXPECT_NE(VelocityLift({.corner_hz = 0.4}, 300.0).taps(),
+            VelocityLift({.corner_hz = 0.0}, 300.0).taps());
+}
+
+/// The weighted squared error of a symmetric filter against its target: the share of the loss up to
+/// the corner, but 0.4 of the rate at most, from there a raised cosine down to nothing at half the
+/// rate, which counts 0.02.
+double error_of(const std::array<double, VelocityLift::kHalf + 1>& cosines, double corner,
+                int order) {
+  const double edge = std::min(corner, 0.4);
+  double error = 0.0;
+  for (int i = 0; i < 512; ++i) {
+    const double f = (i + 0.5) / 1024.0;
+    const double beyond = f > edge ? (f - edge) / (0.5 - edge) : 0.0;
+    const double lift = std::pow(1.0 + std::pow(f / corner, 2 * order), 0.5 * 0.22);
+    double off = -lift * 0.5 * (1.0 + std::cos(std::numbers::pi * beyond));
+    for (std::size_t k = 0; k < cosines.size(); ++k)
+      off += cosines[k] * std::cos(2.0 * std::numbers::pi * f * static_cast<double>(k));
+    error += (f > edge ? 0.02 : 1.0) * off * off;
+  }
+  return error;
+}
+
+// No other filter of its length that leaves zero frequency alone has less: exchanging a little of
+// any two cosines makes the error larger, both ways.
+TEST(VelocityLift, IsTheLeastSquaresFitOfItsTarget) {
+  for (const auto& [corner_hz, order] :
+       {std::pair{100.0, 4}, std::pair{80.0, 2}, std::pair{140.0, 6}}) {
+    const VelocityLift lift{{.corner_hz = corner_hz, .order = order}, 300.0};
+    std::array<double, VelocityLift::kHalf + 1> cosines{};
+    for (std::size_t k = 0; k < cosines.size(); ++k)
+      cosines[k] = (k == 0 ? 1.0 : 2.0) * lift.taps()[VelocityLift::kHalf + k];
+    const double least = error_of(cosines, corner_hz / 300.0, order);
+    for (std::size_t k = 1; k < cosines.size(); ++k) {
+      for (const double part : {-1e-3, 1e-3}) {
+        auto other = cosines;
+        other[k] += part;
+        other[k - 1] -= part;
+        EXPECT_GT(error_of(other, corner_hz / 300.0, order), least) << corner_hz << ", " << k;
+      }
+    }
+  }
 }
 
 TEST(VelocityLift, LeavesZeroFrequencyAlone) {
