@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/spectral_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include "dampline/motion/butterworth.hpp"
+#include "sim_hw/noise.hpp"
+
+namespace dampline {
+namespace {
+
+constexpr double kTrackRateHz = 300.0;
+constexpr int kLater = 24;  // samples by which wheelset 2 is later
+
+GuardConfig declared() {
+  GuardConfig config;
+  config.noise_mps2.fill(0.05);
+  return config;
+}
+
+/// A track of noise up to 60 Hz that both wheelsets see, and a frame that follows the second one.
+class Track {
+ public:
+  using Values = std::array<double, kChannels>;
+  using Change = std::function<void(std::int64_t, Values&)>;
+
+  explicit Track(const GuardConfig& config = declared())
+      : guard_{std::make_unique<SpectralGuard>(config)} {
+    for (std::size_t c = 0; c < kChannels; ++c) guard_->set_change_scale(c, 0.0);
+    guard_->set_difference(1.0);
+  }
+  double noise{0.02};  ///< of each sensor
+  Change change{[](std::int64_t, Values&) {}};
+
+  void run(double length_s) {
+    for (int i = 0; i < static_cast<int>(length_s * kTrackRateHz); ++i, ++tick_) {
+      track_.push_back(4.0 * filter_.update({random_.normal()})[0]);
+      const auto at = [&](std::int64_t n) {
+        return n < 0 ? 0.0 : track_[static_cast<std::size_t>(n)];
+      };
+      const double one = at(tick_);
+      const double two = at(tick_ - kLater);
+      Values values{0.05 * two, one, two};
+      for (double& value : values) value += noise * random_.normal();
+      change(tick_, values);
+      guard_->push(tick_, values, false);
+      guard_->advance(*log_, inputs);
+    }
+  }
+  SpectralGuard& guard() { return *guard_; }
+  FaultLog& log() { return *log_; }
+  [[nodiscard]] std::span<const Fault> faults() const { return log_->faults(); }
+  [[nodiscard]] const Fault* find(FaultKind kind) const {
+    for (const Fault& fault : faults())
+      if (fault.kind == kind) return &fault;
+    return nullptr;
+  }
+  GuardInputs inputs{};
+
+ private:
+  std::unique_ptr<SpectralGuard> guard_;
+  std::unique_ptr<FaultLog> log_{std::make_unique<FaultLog>(kTrackRateHz)};
+  sim::Random random_{21, sim::Stream::kTrack};
+  ButterworthLowPass<1> filter_{60.0, kTrackRateHz};
+  std::vector<double> track_;
+  std::int64_t tick_{0};
+};
+
+TEST(SpectralGuard, FindsNothingWhereAllIsWellAndKnowsTheDelay) {
+  Track track;
+  track.run(5.0);
+  EXPECT_FALSE(track.guard().has_delay());
+  track.run(195.0);
+  EXPECT_TRUE(track.faults().empty());
+  EXPECT_TRUE(track.guard().has_delay());
+  EXPECT_TRUE(track.guard().knows_delay());
+  EXPECT_TRUE(track.guard().steady());
+  EXPECT_NEAR(track.guard().delay_s(), kLater / kTrackRateHz, 3e-5);
+  EXPECT_NEAR(track.guard().frame_follow().usual, 0.05, 0.02);
+  for (std::size_t c = 0; c < kChannels; ++c)
+    EXPECT_NEAR(track.guard().noise_mps2(c) / 0.02, 1.0, 0.2) << c;
+  track.guard().restart();
+  EXPECT_FALSE(track.guard().has_delay());
+  EXPECT_FALSE(track.guard().steady());
+}
+
+TEST(SpectralGuard, JudgesNothingOfWheelsetsThatHardlyMove) {
+  for (const auto& [size, judged] : {std::pair{0.095, false}, std::pair{0.145, true}}) {
+    Track track;  // 2.5 m/s^2 rms lie above 4 Hz
+    track.change = [s = size](std::int64_t, Track::Values& a) {
+      for (double& value : a) value *= s;
+      a[1] = -a[1];
+    };
+    track.run(60.0);
+    EXPECT_EQ(track.find(FaultKind::kWrongPolarity) != nullptr, judged) << size;
+  }
+}
+
+TEST(SpectralGuard, NamesTheSensorThatIsUpsideDown) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    Track track;
+    track.change = [c](std::int64_t, Track::Values& a) { a[c] = -a[c]; };
+    track.run(6.0);
+    EXPECT_TRUE(track.faults().empty()) << "two blocks are needed";
+    track.run(60.0);
+    ASSERT_EQ(track.faults().size(), 1U) << c;
+    EXPECT_EQ(track.faults()[0].kind, FaultKind::kWrongPolarity);
+    EXPECT_EQ(track.faults()[0].channel, channel_of(c));
+    EXPECT_EQ(track.faults()[0].size, -1.0);
+    EXPECT_GE(track.faults()[0].count, 3U);
+  }
+}
+
+TEST(SpectralGuard, NamesAFrameThatShakesMoreThanAWheelset) {
+  for (const auto& [factor, named] : {std::pair{0.9, false}, std::pair{1.1, true}}) {
+    Track track;
+    track.change = [f = factor](std::int64_t, Track::Values& a) {
+      a[0] = f * (a[1] + a[2]) / std::sqrt(2.0);
+    };
+    track.run(60.0);
+    const Fault* const fault = track.find(FaultKind::kSwappedChannels);
+    ASSERT_EQ(fault != nullptr, named) << factor;
+    if (!named) continue;
+    EXPECT_EQ(fault->channel, FaultChannel::kAll);
+    EXPECT_NEAR(fault->size, 1.21, 0.2);
+    EXPECT_FALSE(track.guard().has_delay()) << "nothing else is judged";
+  }
+}
+
+TEST(SpectralGuard, NamesWheelsetsThatCameInTheOtherOrder) {
+  for (const auto& [leading, named] :
+       {std::pair{Leading::kUnknown, false}, std::pair{Leading::kWheelset1, false},
+        std::pair{Leading::kWheelset2, true}}) {
+    GuardConfig config = declared();
+    config.leading = leading;
+    Track track{config};
+    track.run(60.0);
+    ASSERT_EQ(track.find(FaultKind::kSwappedChannels) != nullptr, named);
+    if (!named) continue;
+    EXPECT_EQ(track.faults()[0].channel, FaultChannel::kWheelsets);
+  }
+}
+
+TEST(SpectralGuard, MeasuresAStepOfTheGain) {
+  for (const auto& [gain, named] :
+       {std::pair{1.010, false}, std::pair{1.016, true}, std::pair{0.95, true}}) {
+    Track track;
+    track.change = [g = gain](std::int64_t tick, Track::Values& a) {
+      if (tick > 120 * 300) a[1] *= g;
+    };
+    track.run(240.0);
+    const Fault* const fault = track.find(FaultKind::kGainChange);
+    ASSERT_EQ(fault != nullptr, named) << gain;
+    if (!named) continue;
+    EXPECT_EQ(fault->channel, FaultChannel::kWheelsets);
+    EXPECT_NEAR(fault->size, 100.0 * (gain - 1.0), 0.3);
+    EXPECT_NEAR(fault->time_s, 120.0, 11.0);
+    EXPECT_EQ(fault->count, 1U) << "once";
+  }
+}
+
+TEST(SpectralGuard, MeasuresAGainThatCreeps) {
+  Track track;
+  track.change = [](std::int64_t tick, Track::Values& a) {
+    a[2] *= std::exp(0.05 * static_cast<double>(tick) / (400.0 * 300.0));
+  };
+  track.run(400.0);
+  const Fault* const fault = track.find(FaultKind::kGainChange);
+  ASSERT_NE(fault, nullptr);
+  EXPECT_NEAR(fault->size, -4.7, 0.7) << "of wheelset 1 over wheelset 2";
+  EXPECT_LT(fault->time_s, 25.0) << "from the beginning";
+  EXPECT_GT(fault->count, 3U);
+}
+
+TEST(SpectralGuard, ImpactsForbidAJudgementOfTheGain) {
+  Track track;
+  track.change = [&](std::int64_t tick, Track::Values& a) {
+    if (tick > 120 * 300) a[1] *= 1.05;
+    if (tick % 600 == 0) ++track.inputs.impacts[1];
+  };
+  track.run(240.0);
+  EXPECT_EQ(track.find(FaultKind::kGainChange), nullptr);
+}
+
+// The delay says 24 samples: 2 m at so many metres a second.
+TEST(SpectralGuard, NamesARateThatTheDelayContradicts) {
+  constexpr double kRightMps = 2.0 * kTrackRateHz / kLater;
+  for (const auto& [factor, named] : {std::pair{1.0025, false}, std::pair{1.0035, true},
+                                      std::pair{0.9975, false}, std::pair{0.9965, true}}) {
+    GuardConfig config = declared();
+    config.wheelbase_m = 2.0;
+    config.speed_mps = factor * kRightMps;
+    Track track{config};
+    track.run(120.0);
+    const Fault* const fault = track.find(FaultKind::kWrongSampleRate);
+    ASSERT_EQ(fault != nullptr, named) << factor;
+    if (!named) continue;
+    EXPECT_EQ(fault->channel, FaultChannel::kAll);
+    EXPECT_NEAR(fault->size, factor * 300.0, 0.05);
+  }
+  for (const bool speed : {true, false}) {
+    GuardConfig config = declared();
+    config.wheelbase_m = speed ? 0.0 : 5.0;
+    config.speed_mps = speed ? 5.0 : 0.0;
+    Track track{config};
+    track.run(80.0);
+    EXPECT_TRUE(track.faults().empty()) << "what is not declared is not judged";
+  }
+}
+
+TEST(SpectralGuard, SaysNothingOfTheRateBesideAFaultOfTime) {
+  GuardConfig config = declared();
+  config.wheelbase_m = 2.0;
+  config.speed_mps = 30.0;
+  for (const FaultKind kind : {FaultKind::kClockDrift, FaultKind::kTimingStep,
+                               FaultKind::kLostSamples, FaultKind::kRepeatedSamples}) {
+    for (const FaultChannel channel :
+         {FaultChannel::kWheelset1, FaultChannel::kWheelset2, FaultChannel::kWheelsets}) {
+      Track track{config};
+      track.log().report(kind, channel, 1.0, 1.0);
+      track.run(80.0);
+      EXPECT_EQ(track.find(FaultKind::kWrongSampleRate), nullptr);
+    }
+  }
+  Track other{config};
+  other.log().report(FaultKind::kTimingStep, FaultChannel::kFrame, 1.0, 1.0);
+  other.run(80.0);
+  EXPECT_NE(other.find(FaultKind::kWrongSampleRate), nullptr);
+}
+
+/// More noise of one sensor.
+Track::Change noisy(std::size_t channel, double noise_mps2, double from_s = 0.0,
+                    double to_s = 1e9) {
+  auto random = std::make_shared<sim::Random>(8, sim::Stream::kSensors);
+  return [=](std::int64_t tick, Track::Values& a) {
+    const double time_s = static_cast<double>(tick) / kTrackRateHz;
+    const double more = noise_mps2 * random->normal();
+    if (time_s >= from_s && time_s < to_s) a[channel] += more;
+  };
+}
+
+const Fault* noise_of(Track& track, std::size_t channel, double noise_mps2) {
+  track.change = noisy(channel, noise_mps2);
+  track.run(120.0);
+  return track.find(FaultKind::kExcessNoise);
+}
+
+// 3.5 times the declared power: 1.87 of the deviation.
+TEST(SpectralGuard, NamesNoiseAboveWhatIsDeclared) {
+  for (const auto& [channel, noise, named] :
+       {std::tuple{0U, 0.34, false}, std::tuple{0U, 0.41, true}}) {
+    GuardConfig config;
+    config.noise_mps2[channel] = channel == 0 ? 0.2 : 0.05;
+    Track track{config};
+    const Fault* const fault = noise_of(track, channel, noise);
+    ASSERT_EQ(fault != nullptr, named) << channel << ": " << noise;
+    if (!named) continue;
+    EXPECT_EQ(fault->channel, channel_of(channel));
+    EXPECT_NEAR(fault->size / noise, 1.0, 0.3);
+  }
+  Track undeclared{GuardConfig{}};
+  EXPECT_EQ(noise_of(undeclared, 0, 0.5), nullptr);
+}
+
+TEST(SpectralGuard, TheResolutionIsNoiseToo) {
+  for (const auto& [step, named] : {std::pair{0.1, true}, std::pair{1.5, false}}) {
+    GuardConfig config;
+    config.noise_mps2[0] = 0.01;
+    config.step_mps2[0] = step;  // 1.5 / sqrt(12) is 0.43
+    Track track{config};
+    EXPECT_EQ(noise_of(track, 0, 0.41) != nullptr, named) << step;
+  }
+}
+
+TEST(SpectralGuard, NoiseThatSecondDifferencesDoNotShowIsNone) {
+  for (const auto& [scale, named] : {std::pair{0.7, false}, std::pair{0.9, true}}) {
+    Track track;
+    track.guard().set_change_scale(0, scale);  // sqrt(6) 0.45 / 1.4 is 0.79
+    EXPECT_EQ(noise_of(track, 0, 0.45) != nullptr, named) << scale;
+  }
+}
+
+TEST(SpectralGuard, WhatWasPutInIsNoNoise) {
+  for (const auto& [bridged, named] : {std::pair{0.33, true}, std::pair{0.39, false}}) {
+    Track track;  // 0.45^2 less 1.5 times that is above 3.5 times 0.05^2, or below
+    BridgeFigures figures;
+    figures.noise_mps2[0] = bridged;
+    track.guard().set_bridged(figures);
+    EXPECT_EQ(noise_of(track, 0, 0.45) != nullptr, named) << bridged;
+  }
+}
+
+TEST(SpectralGuard, NoiseAmongImpactsIsNotJudged) {
+  for (const std::size_t c : {0U, 1U}) {
+    Track track;
+    const Track::Change noise = noisy(c, 0.45);
+    track.change = [&](std::int64_t tick, Track::Values& a) {
+      noise(tick, a);
+      if (tick % 600 == 0) ++track.inputs.impacts[c];
+    };
+    track.run(120.0);
+    EXPECT_EQ(track.find(FaultKind::kExcessNoise), nullptr);
+  }
+}
+
+// Six times the usual power.
+TEST(SpectralGuard, NamesABurstAndItsBlocks) {
+  for (const auto& [channel, size, named] :
+       {std::tuple{0U, 0.034, false}, std::tuple{0U, 0.055, true}}) {
+    Track track{GuardConfig{}};
+    track.change = noisy(channel, size, 150.0, 175.0);
+    track.run(240.0);
+    const Fault* const fault = track.find(FaultKind::kNoiseBurst);
+    ASSERT_EQ(fault != nullptr, named) << channel << ": " << size;
+    if (!named) continue;
+    const FaultChannel where = channel == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets;
+    EXPECT_EQ(fault->channel, where);
+    EXPECT_NEAR(fault->size / size, 1.0, 0.35);
+    EXPECT_NEAR(fault->time_s, 162.0, 15.0);
+    EXPECT_TRUE(track.log().spoilt(FaultKind::kNoiseBurst, where, 162 * 300));
+    EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 130 * 300));
+    EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 195 * 300));
+    EXPECT_EQ(track.find(FaultKind::kGainChange), nullptr) << "no change of gain";
+  }
+}
+
+TEST(SpectralGuard, MeasuresAStepOfWhatTheFrameFollows) {
+  Track track;
+  track.noise = 0.0;
+  track.change = [](std::int64_t tick, Track::Values& a) {
+    if (tick > 200 * 300) a[0] *= 1.5;
+  };
+  track.run(400.0);
+  const FrameFollow follow = track.guard().frame_follow();
+  EXPECT_NEAR(follow.step, 0.4, 0.25);
+  EXPECT_GT(follow.step_significance, 1.0);
+  EXPECT_GT(follow.trend, 0.0);
+}
+
+}  // namespace
+}  // namespace dampline
