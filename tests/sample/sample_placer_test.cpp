@@ -151,5 +151,111 @@ TEST(SamplePlacer, MakesStampedJitterAsGoodAsNone) {
   EXPECT_GT(level_of(4e-4, false).value, even.value + 4.0 * even.std);
 }
 
+/// Tones at instants that are off the even ones by so much, which the stamps say or not.
+struct UnevenTones {
+  double off_s{1e-4};
+  bool is_stamped{true};
+  double noise_mps2{1e-3};
+  int samples{20 * 300};
+
+  static double value(double t, std::size_t c) {
+    const double phase = 0.7 * static_cast<double>(c);
+    return 3.0 * std::sin(40.0 * t + phase) + 2.0 * std::cos(233.0 * t) +
+           std::sin(411.0 * t + 2.0 * phase);
+  }
+  [[nodiscard]] std::vector<Sample> record() const {
+    std::mt19937 random{17};
+    std::normal_distribution<double> normal;
+    std::vector<Sample> out;
+    for (int i = 0; i < samples; ++i) {
+      Sample sample{.tick = i};
+      std::array<std::int64_t, kChannels> stamp_ns{};
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const double off = off_s * normal(random);
+        const double told = is_stamped ? off : off_s * normal(random);
+        sample.accel_mps2[c] = value(i / 300.0 + off, c) + noise_mps2 * normal(random);
+        stamp_ns[c] = std::llround(1e9 * (i / 300.0 + told) + 1e6);
+      }
+      sample.time_ns = stamp_ns[0];
+      for (std::size_t w = 0; w < 2; ++w)
+        sample.wheelset_after_us[w] = static_cast<std::int16_t>(
+            std::llround(1e-3 * static_cast<double>(stamp_ns[w + 1] - stamp_ns[0])));
+      out.push_back(sample);
+    }
+    return out;
+  }
+};
+
+double rms_off(const std::vector<Sample>& samples, std::size_t c, std::size_t first,
+               std::size_t last) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < last; ++i) {
+    const double truth = UnevenTones::value(static_cast<double>(samples[i].tick) / 300.0, c);
+    sum += std::pow(samples[i].accel_mps2[c] - truth, 2);
+  }
+  return std::sqrt(sum / static_cast<double>(last - first));
+}
+
+TEST(SamplePlacer, PutsTonesWhereTheyBelong) {
+  const UnevenTones tones{.off_s = 3e-4};
+  const Placed out = place(tones.record());
+  ASSERT_EQ(out.placed.size(), 6000U);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    EXPECT_GT(rms_off(out.taken, c, 3000, 5900), 0.08);
+    EXPECT_LT(rms_off(out.placed, c, 3000, 5900), 0.008) << c;
+    EXPECT_NEAR(out.figures.off_s[c] / 3e-4, 1.0, 0.05);
+  }
+}
+
+TEST(SamplePlacer, LeavesTonesWhoseStampsTellNothing) {
+  const Placed out = place(UnevenTones{.off_s = 3e-4, .is_stamped = false}.record());
+  for (std::size_t i = 0; i < out.taken.size(); ++i)
+    ASSERT_EQ(out.placed[i].accel_mps2, out.taken[i].accel_mps2);
+  for (const double off_s : out.figures.off_s) EXPECT_EQ(off_s, 0.0);
+}
+
+// 20 us rms: what is less is how stamps are rounded.
+TEST(SamplePlacer, PutsNothingThatIsLessThanTwentyMicrosecondsOff) {
+  for (const auto& [off_s, placed] : {std::pair{17e-6, false}, std::pair{25e-6, true}}) {
+    const Placed out = place(UnevenTones{.off_s = off_s, .noise_mps2 = 0.0}.record());
+    EXPECT_EQ(out.figures.off_s[0] > 0.0, placed) << off_s;
+  }
+}
+
+// Thirty-six samples wait once one is put anywhere; none before.
+TEST(SamplePlacer, WaitsWhereItPlaces) {
+  const auto record = UnevenTones{.off_s = 3e-4}.record();
+  SamplePlacer placer{300.0};
+  Sample taken;
+  Sample placed;
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    placer.push(record[i]);
+    while (placer.pop(taken, placed)) ++out;
+    if (i != 200) continue;
+    EXPECT_EQ(out, 201U);
+  }
+  EXPECT_EQ(record.size() - out, 36U);
+  placer.finish();
+  while (placer.pop(taken, placed)) ++out;
+  EXPECT_EQ(out, record.size());
+}
+
+TEST(SamplePlacer, LeavesWhatHasNoNeighboursOrStoodAtFullScaleOrWasPutIn) {
+  auto record = UnevenTones{.off_s = 3e-4}.record();
+  record[4000].saturated = 0b010;
+  record[4100].bridged = 0b001;
+  record.erase(record.begin() + 5000);
+  const Placed out = place(record);
+  EXPECT_EQ(out.placed[4000].accel_mps2[1], out.taken[4000].accel_mps2[1]);
+  EXPECT_NE(out.placed[4000].accel_mps2[0], out.taken[4000].accel_mps2[0]);
+  EXPECT_EQ(out.placed[4100].accel_mps2[0], out.taken[4100].accel_mps2[0]);
+  EXPECT_NE(out.placed[4100].accel_mps2[1], out.taken[4100].accel_mps2[1]);
+  for (std::size_t i = 4980; i < 5020; ++i) {
+    const bool stays = i >= 4988 && i < 5012;
+    EXPECT_EQ(out.placed[i].accel_mps2 == out.taken[i].accel_mps2, stays) << i;
+  }
+}
+
 }  // namespace
 }  // namespace dampline

@@ -202,6 +202,101 @@ TEST(SampleScreen, SeesNoFlatTopInARoundOne) {
   EXPECT_GT(with(screened({.find_flat_tops = true}, samples), Verdict::kSaturated).size(), 20U);
 }
 
+TEST(SampleScreen, WaitsAsLongAsTheRateAsksButNoLongerThanItCan) {
+  for (const auto& [rate_hz, delay] :
+       {std::pair{50.0, 79U}, std::pair{400.0, 79U}, std::pair{412.0, 81U}, std::pair{1000.0, 199U},
+        std::pair{1400.0, 255U}})
+    EXPECT_EQ(SampleScreen({.sample_rate_hz = rate_hz}).delay(), delay) << rate_hz;
+}
+
+TEST(IsNumber, IsBelowAMillion) {
+  EXPECT_TRUE(is_number(-9.9e5));
+  EXPECT_FALSE(is_number(1e6));
+  EXPECT_FALSE(is_number(-1e6));
+  EXPECT_FALSE(is_number(std::nan("")));
+}
+
+TEST(SampleScreen, AnExtraAtFullScaleSpoilsTheSample) {
+  auto samples = moving(300);
+  samples[100].saturated = 0b01000;
+  samples[110].saturated = 0b10000;
+  const auto all = screened({}, samples);
+  EXPECT_EQ(with(all, Verdict::kSaturated), (std::vector<std::size_t>{100, 110}));
+  EXPECT_EQ(all[100].channels, 1);
+}
+
+/// A level of +-1 to and fro, and tops of some equal values; what is marked of them.
+std::size_t marked(double height, int equal, double ramp = 1.0, double step_mps2 = 0.0) {
+  auto samples = moving(2000);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].accel_mps2[1] = i % 2 == 0 ? 1.0 : -1.0;
+  for (int i = 0; i < equal; ++i)
+    samples[1000 + static_cast<std::size_t>(i)].accel_mps2[1] = height;
+  const std::size_t before = static_cast<std::size_t>(equal + 1) / 2;
+  samples[1000 - before].accel_mps2[1] = height * (1.0 - ramp);
+  ScreenConfig config{.find_flat_tops = true};
+  config.step_mps2.fill(step_mps2);
+  return with(screened(config, samples), Verdict::kSaturated).size();
+}
+
+TEST(SampleScreen, AFlatTopIsFourEqualValues) {
+  EXPECT_EQ(marked(10.0, 3), 0U);
+  EXPECT_EQ(marked(10.0, 4), 4U);
+  EXPECT_EQ(marked(-10.0, 4), 4U) << "or a flat bottom";
+  EXPECT_EQ(marked(10.0, 9), 9U);
+}
+
+// The values themselves move the rms of 1 to 1.06 or so.
+TEST(SampleScreen, AFlatTopIsFourDeviationsAboveTheMean) {
+  EXPECT_EQ(marked(3.7, 4, 1.0, 0.1), 0U);
+  EXPECT_EQ(marked(4.5, 4, 1.0, 0.1), 4U);
+  EXPECT_EQ(marked(-3.7, 4, 1.0, 0.1), 0U);
+  EXPECT_EQ(marked(-4.5, 4, 1.0, 0.1), 4U);
+}
+
+// Six steps lie between it and the value half its length before.
+TEST(SampleScreen, AFlatTopRisesSteeply) {
+  EXPECT_EQ(marked(10.0, 4, 0.57, 1.0), 0U);
+  EXPECT_EQ(marked(10.0, 4, 0.63, 1.0), 4U);
+}
+
+TEST(SampleScreen, ALevelThatIsKnownMarksEachValueThatReachesIt) {
+  auto samples = moving(2000);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].accel_mps2[0] = i % 2 == 0 ? 1.0 : -1.0;
+  for (std::size_t i = 1000; i < 1005; ++i) samples[i].accel_mps2[0] = 9.0;
+  samples[1200].accel_mps2[0] = 9.0;
+  samples[1300].accel_mps2[0] = 9.5;  // so it was none
+  samples[1400].accel_mps2[0] = 9.0;
+  ScreenConfig config{.find_flat_tops = true};
+  config.step_mps2.fill(0.1);
+  EXPECT_EQ(with(screened(config, samples), Verdict::kSaturated),
+            (std::vector<std::size_t>{1000, 1001, 1002, 1003, 1004, 1200}));
+}
+
+TEST(SampleScreen, LooksForFlatTopsAfterItsWindow) {
+  for (const auto& [from, found] : {std::pair{70U, false}, std::pair{90U, true}}) {
+    auto samples = moving(600);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      samples[i].accel_mps2[0] = i % 2 == 0 ? 0.5 : -0.5;
+    for (std::size_t i = from; i < from + 4U; ++i) samples[i].accel_mps2[0] = 9.0;
+    EXPECT_EQ(!with(screened({.find_flat_tops = true}, samples), Verdict::kSaturated).empty(),
+              found);
+  }
+}
+
+TEST(SampleScreen, RefusesStepsBelowNothingAndEndlessRates) {
+  ScreenConfig config;
+  config.step_mps2[2] = -0.1;
+  EXPECT_FALSE(SampleScreen::check(config).ok());
+  config.step_mps2[2] = std::nan("");
+  EXPECT_FALSE(SampleScreen::check(config).ok());
+  EXPECT_FALSE(SampleScreen::check({.sample_rate_hz = -1.0}).ok());
+  EXPECT_FALSE(
+      SampleScreen::check({.sample_rate_hz = std::numeric_limits<double>::infinity()}).ok());
+  EXPECT_FALSE(SampleScreen::check({.moved_mps2 = -1.0}).ok());
+}
+
 TEST(SampleScreen, RefusesAConfigurationThatCannotWork) {
   EXPECT_TRUE(SampleScreen::check({}).ok());
   EXPECT_FALSE(SampleScreen::check({.sample_rate_hz = 0.0}).ok());
