@@ -274,6 +274,43 @@ TEST(CsvReader, PassesOverWhatDevicesWriteBeforeTheHeader) {
   EXPECT_EQ(units.rows.size(), 2U) << units.error;
 }
 
+TEST(CsvReader, FindsTheHeaderBelowOneLineAndByItsRowsSeparator) {
+  const auto one = read_all(rig(), "Damper 7\ntime_s;deflection_m;force_n\n0;1;5\n1;2;6\n");
+  ASSERT_EQ(one.rows.size(), 2U) << one.error;
+  EXPECT_EQ(one.health.ignored, 1U);
+  RowFileConfig config = rig();
+  config.renamed = {{"force_n", "force_n, left, filtered, 2"}};
+  const auto commas =
+      read_all(config, "a\nb\ntime_s;deflection_m;force_n, left, filtered, 2\n0;1;5\n1;2;6\n");
+  ASSERT_EQ(commas.rows.size(), 2U) << commas.error;
+  EXPECT_THAT(commas.rows[1], ElementsAre(1.0, 2.0, 6.0));
+}
+
+TEST(CsvReader, PassesOverUnitsThatAreShortOrInBrackets) {
+  const std::string head = "a;b\ntime_s;deflection_m;force_n\n";
+  const std::string rows = "0;1;5\n1;2;6\n";
+  EXPECT_EQ(read_all(rig(), head + "[seconds];(millimetres);N\n" + rows).rows.size(), 2U);
+  EXPECT_EQ(read_all(rig(), head + "s;m/s^2;N\n" + rows).rows.size(), 2U);
+  EXPECT_THAT(read_all(rig(), head + "seconds;metres;N\n" + rows).error,
+              HasSubstr("expected it among: seconds, metres, N"))
+      << "names, of which the last line counts";
+}
+
+TEST(CsvReader, TakesOneRowForARecordAndTwoNumbersForNoHeader) {
+  const auto one = read_all(rig(), "time_s,deflection_m,force_n\n0,1,2\n");
+  EXPECT_EQ(one.rows.size(), 1U);
+  EXPECT_EQ(one.end, Errc::kEndOfStream);
+  RowFileConfig config;
+  config.required = {"time_s"};
+  config.renamed = {{"time_s", "2"}};
+  EXPECT_EQ(read_all(config, "5,1\n6,2\n").rows.size(), 2U);
+}
+
+TEST(CsvReader, APreambleMayHoldARowThatIsNone) {
+  const auto out = read_all(rig(), "file;7\n;3\n\ntime_s;deflection_m;force_n\n0;1;5\n1;2;6\n");
+  ASSERT_EQ(out.rows.size(), 2U) << out.error;
+}
+
 TEST(CsvReader, ReadsTheMeasuredRigRecords) {
   const auto path = test::shared_data() / "emps" / "emps_train.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "measured data not found: " << path;
