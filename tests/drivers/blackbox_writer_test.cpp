@@ -95,6 +95,28 @@ TEST(BlackboxWriter, RotatesBySize) {
   EXPECT_EQ(alone.health.dropped, 0U);
 }
 
+TEST(BlackboxWriter, AFilesHourBeginsWithItsFirstRecord) {
+  const BoxFolder folder;
+  const auto writer = open_box(test::box_config(folder.path()));
+  writer->tick(0);
+  writer->write(numbered_frame(0));
+  writer->tick(1800 * kSecondNs);
+  writer->rotate();
+  writer->write(numbered_frame(1));
+  writer->tick(5399 * kSecondNs);
+  writer->write(numbered_frame(2));
+  EXPECT_EQ(folder.files(), 2U);
+  EXPECT_EQ(writer->health().files, 2U);
+  writer->tick(5400 * kSecondNs);
+  writer->write(numbered_frame(3));
+  EXPECT_EQ(folder.files(), 3U);
+  const std::uint64_t syncs = writer->health().syncs;
+  writer->rotate();
+  writer->write(numbered_frame(4));
+  EXPECT_EQ(writer->health().syncs, syncs + 2)
+      << "the end of one file and the beginning of the next";
+}
+
 TEST(BlackboxWriter, RotatesByTimeAndWhenAsked) {
   const BoxFolder folder;
   const auto writer = open_box(test::box_config(folder.path()));
