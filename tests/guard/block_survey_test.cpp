@@ -211,6 +211,34 @@ TEST(BlockSurvey, WhatWheelsDoNotShareIsADensity) {
   EXPECT_NEAR(figures.incoherent, 0.3 * kDensity, 1e-9 * kDensity);
 }
 
+// Sensors of another sensitivity, all alike: shares and delays stay, powers grow with its square.
+TEST(BlockSurvey, SharesDoNotDependOnTheUnit) {
+  for (const double unit : {1.0, 0.3, 30.0}) {
+    SpectrumSums sums = sums_of({.late_s = 0.0007, .gain = 1.2, .frame = 0.4});
+    for (std::size_t k = 0; k < kSpectrumBins; ++k) {
+      const double differ = k >= 180 ? 0.5 : 0.8;
+      sums.aligned[k] *= differ;
+      sums.frame[k] += 30.0 / (1.0 + static_cast<double>(k * k));
+      for (auto* real : {&sums.frame, &sums.wheelset1, &sums.wheelset2, &sums.delayed1, &sums.mean})
+        (*real)[k] *= unit * unit;
+      for (auto* cross : {&sums.wheelsets, &sums.aligned, sums.frame_to.data(), &sums.frame_to[1]})
+        (*cross)[k] *= unit * unit;
+    }
+    const BlockFigures figures = survey_of(sums);
+    EXPECT_NEAR(figures.coherent_share, 1.0, 1e-12);
+    // The mean of cos(2 pi f 0.7 ms) over 4 to 90 Hz.
+    EXPECT_NEAR(figures.match, 0.9728, 0.002);
+    EXPECT_NEAR(figures.delay_s, 0.0007, 1e-9);
+    EXPECT_NEAR(figures.log_gain, std::log(1.2), 1e-9);
+    EXPECT_NEAR(figures.incoherent_share, 0.2, 1e-9);
+    EXPECT_NEAR(figures.wheelset_mps2 / unit, std::sqrt(kDensity * kBinHz * 147.0 * 1.22), 1e-9);
+    // What is not shared at 110 to 126 Hz, less the 0.2 elsewhere: 2 * 0.3 of the mean power.
+    EXPECT_NEAR((figures.noise[1] + figures.noise[2]) / (unit * unit * kDensity), 2.0 * 0.3 * 1.2,
+                0.01);
+    EXPECT_NEAR(figures.incoherent / (unit * unit * kDensity), 0.2 * 1.2, 1e-6);
+  }
+}
+
 TEST(BlockSurvey, MeasuresTheFramesLagAgainstTheBlocksBefore) {
   BlockSurvey survey{kSurveyRateHz, {}};
   survey_all(survey, sums_of({.frame_late_s = 0.003}));

@@ -519,6 +519,27 @@ TEST(GuardCodes, NamesTheLevelAtWhichAChannelClips) {
   EXPECT_TRUE(codes.spoils(FaultKind::kClipping, 5900));
 }
 
+// What nobody declared is learnt in ten seconds, and what was counted before is forgotten.
+TEST(GuardCodes, LearnsItsStepAndCountsByIt) {
+  Codes codes{GuardConfig{}};
+  const auto clip = [](Sample& sample) {
+    sample.accel_mps2[1] = std::min(sample.accel_mps2[1], Codes::code(70));
+  };
+  codes.run(3001, clip);
+  EXPECT_TRUE(codes.faults().empty());
+  codes.run(6000, clip);
+  const Fault* const fault = codes.find(FaultKind::kClipping);
+  ASSERT_NE(fault, nullptr);
+  EXPECT_EQ(fault->channel, FaultChannel::kWheelset1);
+  EXPECT_NEAR(fault->size, 70 * kStepMps2, 1e-9);
+  EXPECT_GT(fault->time_s, 10.0);
+  EXPECT_EQ(codes.faults().size(), 1U);
+  codes.run(6000, spikes(0, {9300, 10'100, 11'800, 12'999}));
+  const Fault* const spiked = codes.find(FaultKind::kSpikes);
+  ASSERT_NE(spiked, nullptr);
+  EXPECT_NEAR(spiked->size, 2000 * kStepMps2, 1.0);
+}
+
 TEST(GuardCodes, RepeatedSamplesAreTheirExcess) {
   std::array<double, 3> last{};
   Codes codes;

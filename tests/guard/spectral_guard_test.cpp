@@ -324,6 +324,10 @@ TEST(SpectralGuard, NamesABurstAndItsBlocks) {
     EXPECT_EQ(fault->channel, where);
     EXPECT_NEAR(fault->size / size, 1.0, 0.35);
     EXPECT_NEAR(fault->time_s, 162.0, 15.0);
+    for (const double off_s : {-5.0, 5.0}) {  // a block is 11 s
+      const std::int64_t tick = std::llround((fault->time_s + off_s) * kTrackRateHz);
+      EXPECT_TRUE(track.log().spoilt(FaultKind::kNoiseBurst, where, tick)) << off_s;
+    }
     EXPECT_TRUE(track.log().spoilt(FaultKind::kNoiseBurst, where, 162 * 300));
     EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 130 * 300));
     EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 195 * 300));
