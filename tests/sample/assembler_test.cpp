@@ -271,6 +271,19 @@ TEST(Assembler, RefusesAConfigurationThatCannotWork) {
   EXPECT_FALSE(SampleAssembler::check(config).ok());
 }
 
+TEST(Assembler, AnInstantWaitsSixteenTicksForItsChannels) {
+  const Nodes nodes;
+  SampleAssembler assembler{nodes.config()};
+  for (const CanFrame& frame : run(nodes, 0, 100)) assembler.push(frame);
+  EXPECT_EQ(assembler.counts().samples, 100U);
+  for (std::int64_t tick = 100; tick < 150; ++tick) {  // the third channel is off
+    assembler.push(nodes.frame(0, tick));
+    assembler.push(nodes.frame(1, tick));
+    const std::uint64_t given_up = tick < 116 ? 0 : static_cast<std::uint64_t>(tick - 115);
+    EXPECT_EQ(assembler.counts().incomplete, given_up) << tick;
+  }
+}
+
 /// Anything may come over a bus: the assembler must bear it, and ticks must increase.
 TEST(Assembler, BearsRandomFrames) {
   std::mt19937_64 random{11};

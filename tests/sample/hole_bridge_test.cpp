@@ -145,5 +145,81 @@ TEST(HoleBridge, LetsADeadChannelBe) {
   EXPECT_EQ(out.figures.values, 0U);
 }
 
+/// So many samples of a ramp, which a smooth curve continues exactly; the frame's value is missing
+/// at these places.
+Bridged ramp_without(std::size_t length, const std::vector<std::size_t>& missing) {
+  std::vector<Sample> in;
+  for (std::size_t i = 0; i < length; ++i) {
+    const auto x = static_cast<double>(i);
+    in.push_back({.tick = static_cast<std::int64_t>(i), .accel_mps2 = {3.0 + 0.1 * x, x, -x}});
+  }
+  for (const std::size_t place : missing) in[place].accel_mps2[0] = kNothing;
+  return bridged(in);
+}
+
+TEST(HoleBridge, PutsInThreeValuesInARowWithSixAfter) {
+  EXPECT_EQ(ramp_without(60, {53}).figures.values, 1U);
+  EXPECT_EQ(ramp_without(60, {54}).figures.values, 0U);
+  EXPECT_EQ(ramp_without(60, {20, 21, 22}).figures.values, 3U);
+  EXPECT_NEAR(ramp_without(60, {20, 21, 22}).samples[21].accel_mps2[0], 5.1, 1e-9);
+  EXPECT_EQ(ramp_without(60, {20, 21, 22, 23}).figures.values, 0U);
+  EXPECT_EQ(ramp_without(60, {20, 22, 24, 26}).figures.values, 4U) << "several at once";
+}
+
+// Once a model is learned.
+TEST(HoleBridge, NeedsEightSamplesAfterAHoleThatStays) {
+  for (const auto& [later, filled] : {std::pair{7U, 0U}, std::pair{8U, 1U}}) {
+    auto holed = record();
+    holed[1500].accel_mps2[1] = kNothing;
+    for (std::size_t at = 2000; at < 2004; ++at) holed[at].accel_mps2[1] = kNothing;
+    holed[2004 + later].accel_mps2[1] = kNothing;
+    EXPECT_EQ(bridged(holed).figures.values, 1U + filled) << later;
+  }
+}
+
+TEST(HoleBridge, LagsByTwentySamples) {
+  HoleBridge bridge;
+  Sample out;
+  for (std::int64_t tick = 0; tick < 20; ++tick) {
+    bridge.push({.tick = tick});
+    EXPECT_FALSE(bridge.pop(out)) << tick;
+  }
+  bridge.push({.tick = 20});
+  ASSERT_TRUE(bridge.pop(out));
+  EXPECT_EQ(out.tick, 0);
+  EXPECT_FALSE(bridge.pop(out));
+}
+
+// Gravity, or whatever a sensor stands at.
+TEST(HoleBridge, AMeanChangesNothing) {
+  const auto in = record();
+  std::array<Bridged, 2> out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    auto holed = in;
+    for (Sample& sample : holed)
+      for (double& a : sample.accel_mps2) a += i == 0 ? 0.0 : 100.0;
+    for (std::size_t at = 1000; at < kLength - 100; at += 97) holed[at].accel_mps2[1] = kNothing;
+    out[i] = bridged(holed);
+  }
+  for (std::size_t at = 1000; at < kLength - 100; at += 97)
+    EXPECT_NEAR(out[1].samples[at].accel_mps2[1] - 100.0, out[0].samples[at].accel_mps2[1], 1e-6);
+  EXPECT_NEAR(out[1].figures.error_mps2[1] / out[0].figures.error_mps2[1], 1.0, 1e-6);
+}
+
+// Errors of single values, over all samples.
+TEST(HoleBridge, SaysWhatNoiseItMakesOfAllSamples) {
+  auto holed = record();
+  std::uint64_t count = 0;
+  for (std::size_t at = 1000; at < kLength - 100; at += 97, ++count)
+    holed[at].accel_mps2[2] = kNothing;
+  const BridgeFigures figures = bridged(holed).figures;
+  EXPECT_EQ(figures.values, count);
+  const double share = static_cast<double>(count) / static_cast<double>(kLength);
+  EXPECT_NEAR(figures.share, share, 1e-12);
+  EXPECT_NEAR(figures.noise_mps2[2], figures.error_mps2[2] * std::sqrt(share), 1e-12);
+  EXPECT_EQ(figures.noise_mps2[0], 0.0);
+  EXPECT_EQ(figures.error_mps2[1], 0.0);
+}
+
 }  // namespace
 }  // namespace dampline
