@@ -10,6 +10,7 @@
 
 #include "drivers/csv/reader.hpp"
 #include "temporary_file.hpp"
+#include "tests/shared_data.hpp"
 
 namespace dampline::drivers {
 namespace {
