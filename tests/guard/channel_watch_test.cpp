@@ -308,5 +308,14 @@ TEST(LevelWatch, AJumpIsTenDeviationsOfTheDifferencesBefore) {
   EXPECT_TRUE(jump_of(uneven(0.1, 2.2)));
 }
 
+TEST(LevelWatch, ARestartBeginsASecond) {
+  LevelWatch watch{kSecondSamples};
+  LevelJump jump;
+  for (std::int64_t tick = 0; tick < 600; ++tick) {
+    EXPECT_FALSE(watch.update(tick, 20.0, jump)) << tick;
+    if (tick == 304) watch.restart();
+  }
+}
+
 }  // namespace
 }  // namespace dampline

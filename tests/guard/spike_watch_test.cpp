@@ -162,6 +162,8 @@ TEST(ImpulsePower, OfImpulsesAloneIsTheirMeanSquare) {
   for (int i = 0; i < kSamples; ++i) power.update(i % 20 == 10 && i < 1990 ? 0.7 : 0.0);
   EXPECT_NEAR(power.take(), 99.0 * 0.49 / 2000.0, 1e-12);
   EXPECT_EQ(power.take(), 0.0) << "of what came since";
+  for (int i = 0; i < 500; ++i) power.update(0.0);
+  EXPECT_EQ(power.take(), 0.0);
 }
 
 TEST(ImpulsePower, OfOneSizeThroughoutIsNothing) {
