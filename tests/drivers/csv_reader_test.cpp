@@ -176,6 +176,18 @@ TEST(CsvReader, DeliversTheRowsBeforeABadOneAndStaysStopped) {
   EXPECT_EQ(reader.value()->read(rows).error(), Errc::kMalformed);
 }
 
+TEST(CsvReader, FillsTheRoomThatThereIs) {
+  const TemporaryFile file{"time_s,deflection_m,force_n\n0,1,2\n1,2,3\n2,3,4\n"};
+  RowFileConfig config = rig();
+  config.path = file.path();
+  auto reader = CsvReader::open(config);
+  std::array<double, 6> rows{};
+  EXPECT_EQ(reader.value()->read({rows.data(), 2}).value(), 0U) << "less than a row";
+  EXPECT_EQ(reader.value()->read({rows.data(), 3}).value(), 1U);
+  EXPECT_EQ(reader.value()->read(rows).value(), 2U);
+  EXPECT_EQ(rows[5], 4.0);
+}
+
 TEST(CsvReader, CountsBadRowsWhenAskedTo) {
   RowFileConfig config = rig();
   config.skip_bad_lines = true;
