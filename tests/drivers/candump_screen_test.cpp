@@ -118,6 +118,8 @@ TEST(CandumpScreen, ReadsIdentifiersAndFlags) {
 TEST(CandumpScreen, KnowsCanFdByTheFormOfItsLength) {
   EXPECT_TRUE(screen_line("(1.0) can0 123 [08] 1 2 3 4 5 6 7 8").frame.fd);
   EXPECT_FALSE(screen_line("(1.0) can0 123 [8] 1 2 3 4 5 6 7 8").frame.fd);
+  EXPECT_FALSE(screen_line("(1.0) can0 123 [0]").frame.fd);
+  EXPECT_TRUE(screen_line("(1.0) can0 123 [00]").frame.fd);
   EXPECT_TRUE(screen_line("(1.0) can0 123 [12] 1 2 3 4 5 6 7 8 9 A B C").frame.fd);
   std::string bytes;
   for (int i = 0; i < 64; ++i) bytes += " 5A";
@@ -172,6 +174,12 @@ TEST(CandumpScreen, StampsFramesWithoutTimesByTheirInstants) {
                                           10'000'000, 20'000'000));
   ASSERT_EQ(parser.notes().size(), 1U);
   EXPECT_THAT(parser.notes()[0], testing::HasSubstr("10 ms apart"));
+}
+
+TEST(CandumpScreen, LeavesFramesWithoutTimesAloneWhereNobodySaysHowFarApartTheyAre) {
+  const OfScreen out = screen_line("can0 123 [1] 11");
+  EXPECT_EQ(out.kind, Kind::kFrame);
+  EXPECT_EQ(out.frame.time_ns, 0);
 }
 
 TEST(CandumpScreen, KnowsTimesBetweenFramesByThoseThatGoBack) {

@@ -61,6 +61,12 @@ TEST(CandumpSource, ReadsFramesInOrder) {
   EXPECT_EQ(all.frames[42].time_ns, 1000'420'000'000);
 }
 
+TEST(CandumpSource, FramesOfOneTimeAreInOrder) {
+  const Outcomes all = read_all({}, line(1.0) + line(1.0) + line(2.0) + line(1.5));
+  EXPECT_EQ(all.frames.size(), 4U);
+  EXPECT_EQ(all.health.reordered, 1U);
+}
+
 TEST(CandumpSource, IgnoresAndCountsLinesThatAreNoFrames) {
   const Outcomes all =
       read_all({}, "# comment\n\n" + line(1.0) + "  (2.000000) can0 123#\n" + line(2.0));
