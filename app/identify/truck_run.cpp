@@ -11,6 +11,7 @@
 #include "app/record/rate.hpp"
 #include "app/run/trust.hpp"
 #include "app/text/format.hpp"
+#include "dampline/motion/decimator.hpp"
 
 namespace dampline::app {
 namespace {
@@ -73,6 +74,14 @@ IdentifierConfig core_config(const Config& config, const RecordSignals& signals)
   return out;
 }
 
+/// Behind a filter that is open up to the thinned band's edge, leaps of friction and noise have
+/// nearly one shape in it; they are told apart as in any record then.
+AntiAliasConfig low_pass_of(const InputConfig& input) {
+  const double corner_hz = input.anti_alias.corner_hz;
+  const bool closes = corner_hz > 0.0 && corner_hz < kThinnedEdge * truck_rate_hz(input);
+  return {corner_hz, input.anti_alias.order, closes && decimation(input.sample_rate_hz) > 1};
+}
+
 }  // namespace
 
 EstimatorConfig estimator_config(const Config& config) {
@@ -82,7 +91,7 @@ EstimatorConfig estimator_config(const Config& config) {
   core.far_mass_kg = config.car.far_mass_kg.value_or(0.0);
   core.frame_pitch_mass_kg = config.car.frame_pitch_mass_kg.value_or(0.0);
   core.velocity_corner_hz = config.model.velocity_corner_hz.value_or(0.0);
-  core.anti_alias = {config.input.anti_alias.corner_hz, config.input.anti_alias.order};
+  core.anti_alias = low_pass_of(config.input);
   const auto& nodes = config.model.curve_nodes_mps;
   if (!nodes.empty()) std::copy(nodes.begin(), nodes.end(), core.curve_nodes_mps.begin());
   core.memory = memory_of(config.estimate.memory);

@@ -25,9 +25,8 @@ constexpr double kMostWeight = 50.0;
 
 using Complex = std::complex<double>;
 
-double squared_response(const AntiAliasConfig& filter, double f_hz) noexcept {
-  if (filter.corner_hz <= 0.0) return 1.0;
-  return 1.0 / (1.0 + std::pow(f_hz / filter.corner_hz, 2.0 * filter.order));
+double edge_of(const AntiAliasConfig& filter) noexcept {
+  return filter.thinned ? kThinnedEdge : 0.49;
 }
 
 double coherence(const Complex& cross, double a, double b) noexcept {
@@ -102,15 +101,13 @@ BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alia
       fast_{band(40.0, 0.333 * sample_rate_hz)},
       lag_{band(15.0, 0.317 * sample_rate_hz)},
       middle_{band(0.15 * sample_rate_hz, 0.283 * sample_rate_hz)},
-      noise_{band(0.333 * sample_rate_hz, 0.49 * sample_rate_hz)},
+      noise_{band(0.333 * sample_rate_hz, edge_of(anti_alias) * sample_rate_hz)},
       incoherent_{band(0.367 * sample_rate_hz, 0.42 * sample_rate_hz)},
-      edge_{band(0.46 * sample_rate_hz, 0.49 * sample_rate_hz)},
+      edge_{band((edge_of(anti_alias) - 0.03) * sample_rate_hz,
+                 edge_of(anti_alias) * sample_rate_hz)},
       lags_{LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}} {
-  for (std::size_t k = 1; k < kSpectrumBins; ++k) {
-    const double beyond_hz = rate_hz_ - hz(k);
-    alias_shape_[k] = squared_response(anti_alias, hz(k)) / (hz(k) * hz(k)) +
-                      squared_response(anti_alias, beyond_hz) / (beyond_hz * beyond_hz);
-  }
+  for (std::size_t k = 1; k < kSpectrumBins; ++k)
+    alias_shape_[k] = leap_power(anti_alias, hz(k), rate_hz_);
 }
 
 void BlockSurvey::start(const SpectrumSums& sums) noexcept {

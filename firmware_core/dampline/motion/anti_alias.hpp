@@ -12,11 +12,27 @@ namespace dampline {
 struct AntiAliasConfig {
   double corner_hz{100.0};  ///< -3 dB; 0: none, or unknown
   int order{4};             ///< 1...8
+  /// The samples come of a Decimator: nothing is folded into them, and nothing but its edge is
+  /// above kThinnedEdge of their rate.
+  bool thinned{false};
 };
+inline constexpr double kThinnedEdge = 0.455;
 
 /// What a Butterworth low pass divides a power by, at `relative` times its corner.
 [[nodiscard]] inline double butterworth_loss(double relative, int order) noexcept {
   return 1.0 + std::pow(relative, 2 * order);
+}
+
+/// The power of friction's leaps at a frequency, up to a factor, as it is sampled: that of 1 / f
+/// behind the filter, and what is folded into it.
+[[nodiscard]] inline double leap_power(const AntiAliasConfig& filter, double f_hz,
+                                       double sample_rate_hz) noexcept {
+  const auto power = [&](double hz) {
+    const bool known = filter.corner_hz > 0.0;
+    const double passed = known ? 1.0 / butterworth_loss(hz / filter.corner_hz, filter.order) : 1.0;
+    return passed / (hz * hz);
+  };
+  return power(f_hz) + (filter.thinned ? 0.0 : power(sample_rate_hz - f_hz));
 }
 
 /// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter

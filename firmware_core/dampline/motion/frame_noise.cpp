@@ -15,26 +15,19 @@ constexpr double kFewestSegments = 36.0;
 constexpr int kIterations = 4;
 constexpr double kLeast = 1e-3;  // of the largest power, so that no weight is without bound
 
-double squared_response(const AntiAliasConfig& filter, double f_hz) {
-  if (filter.corner_hz <= 0.0) return 1.0;
-  return 1.0 / butterworth_loss(f_hz / filter.corner_hz, filter.order);
-}
-
 }  // namespace
 
 FrameNoise::FrameNoise(double sample_rate_hz, const AntiAliasConfig& anti_alias)
     : rate_hz_{sample_rate_hz},
       first_bin_{static_cast<std::size_t>(std::ceil(kFirst * Fourier512::kSize))},
-      last_bin_{static_cast<std::size_t>(std::floor(kLast * Fourier512::kSize))} {
+      last_bin_{static_cast<std::size_t>(
+          std::floor((anti_alias.thinned ? kThinnedEdge : kLast) * Fourier512::kSize))} {
   for (std::size_t n = 0; n < window_.size(); ++n) {
     const double turn = static_cast<double>(n) / Fourier512::kSize;
     window_[n] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
   }
-  for (std::size_t k = first_bin_; k <= last_bin_; ++k) {
-    const double beyond_hz = rate_hz_ - hz(k);
-    folded_[k] = squared_response(anti_alias, hz(k)) / (hz(k) * hz(k)) +
-                 squared_response(anti_alias, beyond_hz) / (beyond_hz * beyond_hz);
-  }
+  for (std::size_t k = first_bin_; k <= last_bin_; ++k)
+    folded_[k] = leap_power(anti_alias, hz(k), rate_hz_);
 }
 
 void FrameNoise::take(const Sample& sample) {
