@@ -28,7 +28,7 @@ using dampline::test::PlainTruck;
 constexpr double kLengthS = 300.0;
 
 struct Case {
-  const char* name;
+  const char* name{""};
   PlainSensors sensors;
 };
 constexpr std::array kCases{

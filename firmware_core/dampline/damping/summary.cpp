@@ -62,8 +62,8 @@ struct Context {
   const StatisticsHeader& header;
   const ScaleFactors& total;
   Entries entries;
-  double mass_kg;
-  double blocks_factor;
+  double mass_kg{0.0};
+  double blocks_factor{1.0};
   VelocityError velocity;
 };
 
