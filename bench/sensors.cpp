@@ -4,17 +4,13 @@
 // deviations. `sensors [RECORDS_PER_ROW_AND_TRUCK [FIRST_SEED [ROW]]]`; a record of 300 s takes two
 // seconds.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "app/identify/identify_source.hpp"
 #include "tests/app/plain_truck.hpp"
 #include "tests/explain/coverage.hpp"
 
@@ -74,29 +70,13 @@ struct Errors {
   }
 };
 
-app::RunResult identified(const PlainTruck& truck, const PlainSensors& sensors,
-                          std::uint64_t seed) {
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / fmt::format("sensors_{}.csv", ::getpid());
-  std::ofstream{path} << test::plain_record(truck, sensors, kLengthS, seed);
-  app::Config config;
-  config.car.moving_mass_kg = truck.mass_kg;
-  config.input.sample_rate_hz = sensors.rate_hz;
-  config.input.anti_alias.corner_hz = sensors.corner_hz;
-  app::RunResult out =
-      app::identify_source(config, {path.string(), false}, app::SourceKind::kTruckRows, false)
-          .result;
-  std::filesystem::remove(path);
-  return out;
-}
-
 void print_row(const Case& c, int records, std::uint64_t seed) {
   Errors level, spring;
   int trusted = 0;
   for (const PlainTruck& truck : test::kPlainTrucks) {
     for (int i = 0; i < records; ++i) {
       const app::RunResult result =
-          identified(truck, c.sensors, seed + static_cast<std::uint64_t>(i));
+          test::identified_from(truck, c.sensors, kLengthS, seed + static_cast<std::uint64_t>(i));
       trusted += result.trust == app::Trust::kTrusted ? 1 : 0;
       for (const app::Parameter& p : result.parameters) {
         if (p.name == "coulomb") level.add({p.value, p.std}, truck.coulomb_n);
@@ -115,9 +95,8 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 2 ? static_cast<std::uint64_t>(std::atoll(argv[2])) : 7001;
   const std::string only = argc > 3 ? argv[3] : "";
   fmt::print(
-      "| sensors | Fc: mean error, % | worst, % | stated, % | within two | rms z | k: mean error, "
-      "% "
-      "| worst, % | stated, % | within two | rms z | trusted |\n"
+      "| sensors | Fc: mean error, % | worst, % | stated, % | within two | rms z "
+      "| k: mean error, % | worst, % | stated, % | within two | rms z | trusted |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& c : kCases)
     if (only.empty() || c.name == only) print_row(c, records, seed);

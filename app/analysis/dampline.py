@@ -204,13 +204,11 @@ class State:
         width = _WIDTHS_MPS[law.width] + law.theta[-1] / coulomb * span
         share, lost = self._velocity_error(width)
         bias = _LEVEL_BIAS[0] * share
-        factor = (1.0 + lost) / (1.0 + bias)
-        level, level_std = factor * level, np.hypot(
-            factor * level_std, np.hypot(_LEVEL_BIAS[1] * bias, lost) * factor * level)
+        level, level_std = _corrected(level, level_std, (1.0 + lost) / (1.0 + bias),
+                                      np.hypot(_LEVEL_BIAS[1] * bias, lost))
         bias = _STIFFNESS_BIAS[0] * share
-        factor = 1.0 + bias
-        stiffness, stiffness_std = factor * stiffness, np.hypot(
-            factor * stiffness_std, np.hypot(_STIFFNESS_BIAS[1] * bias, lost) * factor * stiffness)
+        stiffness, stiffness_std = _corrected(stiffness, stiffness_std, 1.0 + bias,
+                                              np.hypot(_STIFFNESS_BIAS[1] * bias, lost))
         k = moving_mass_kg * ratio**2
         out = {"coulomb": Estimate(moving_mass_kg * level, moving_mass_kg * level_std, "N"),
                "stiffness": Estimate(k * stiffness, k * stiffness_std, "N/m")}
@@ -364,6 +362,11 @@ def _unit(column):
 
 def _map(regressors):
     return np.column_stack(regressors + [_unit(_TARGET)])
+
+
+def _corrected(value, std, factor, uncertain):
+    """A value and its deviation times a factor; `uncertain`, of the value, is in the deviation then."""
+    return factor * value, np.hypot(factor * std, uncertain * factor * value)
 
 
 def _middle(viscous):

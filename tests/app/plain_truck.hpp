@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "app/identify/identify_source.hpp"
+#include "tests/drivers/temporary_file.hpp"
+
 /// A truck on rough track and what sensors of any kind make of it, by a simulation of its own:
 /// noise through filters as the track, friction that holds or slides by an exact rule at 77 kHz,
 /// sensors with any rate, low pass, noise, resolution and jitter.
@@ -152,6 +155,18 @@ inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sen
     text += '\n';
   }
   return text;
+}
+
+/// What `identify` makes of such a record when it is told of mass, rate and low pass.
+inline app::RunResult identified_from(const PlainTruck& truck, const PlainSensors& sensors,
+                                      double length_s, std::uint64_t seed) {
+  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
+  app::Config config;
+  config.car.moving_mass_kg = truck.mass_kg;
+  config.input.sample_rate_hz = sensors.rate_hz;
+  config.input.anti_alias.corner_hz = sensors.corner_hz;
+  return app::identify_source(config, {file.path(), false}, app::SourceKind::kTruckRows, false)
+      .result;
 }
 
 }  // namespace dampline::test

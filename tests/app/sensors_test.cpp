@@ -2,37 +2,23 @@
 // What coarse, noisy, slow and unfiltered sensors cost, by a simulation that shares nothing with
 // the program. bench/sensors has every row on more records.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <stdexcept>
+#include <string>
 
-#include "app/identify/identify_source.hpp"
 #include "app/run/json.hpp"
 #include "tests/app/plain_truck.hpp"
 
 namespace dampline::app {
 namespace {
 
+using test::identified_from;
 using test::kPlainTrucks;
 using test::PlainSensors;
 using test::PlainTruck;
 
-RunResult identified_from(const PlainTruck& truck, const PlainSensors& sensors,
-                          std::uint64_t seed) {
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / fmt::format("sensors_test_{}.csv", ::getpid());
-  std::ofstream{path} << test::plain_record(truck, sensors, 200.0, seed);
-  Config config;
-  config.car.moving_mass_kg = truck.mass_kg;
-  config.input.sample_rate_hz = sensors.rate_hz;
-  config.input.anti_alias.corner_hz = sensors.corner_hz;
-  RunResult out =
-      identify_source(config, {path.string(), false}, SourceKind::kTruckRows, false).result;
-  std::filesystem::remove(path);
-  return out;
-}
+constexpr double kSeconds = 200.0;
 
 const Parameter& parameter(const RunResult& result, const char* name) {
   const Parameter* const found = find_parameter(result.parameters, name);
@@ -52,7 +38,7 @@ class PlainSensorsTest : public testing::TestWithParam<Sensing> {};
 TEST_P(PlainSensorsTest, LeaveLevelAndSpringWithinTheirDeviations) {
   for (const std::size_t which : {0U, 2U}) {
     const PlainTruck& truck = kPlainTrucks.at(which);
-    const RunResult result = identified_from(truck, GetParam().sensors, 31);
+    const RunResult result = identified_from(truck, GetParam().sensors, kSeconds, 31);
     const Parameter& level = parameter(result, "coulomb");
     const Parameter& spring = parameter(result, "stiffness");
     EXPECT_LE(std::abs(level.value / truck.coulomb_n - 1.0), GetParam().most_level) << truck.name;
@@ -74,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, PlainSensorsTest,
 TEST(PlainSensorsCurve, HoldsTheLevelAtItsSlowestNode) {
   const PlainTruck& truck = kPlainTrucks.front();
   for (const double noise_mps2 : {0.02, 0.1}) {
-    const RunResult result = identified_from(truck, {.noise_mps2 = noise_mps2}, 32);
+    const RunResult result = identified_from(truck, {.noise_mps2 = noise_mps2}, kSeconds, 32);
     int nodes = 0;
     for (const CurveRow& row : result.curve) {
       if (row.velocity_mps <= 0.0 || row.velocity_mps > 0.02) continue;

@@ -8,36 +8,22 @@
 
 #include "drivers/asc/parser.hpp"
 #include "drivers/trc/parser.hpp"
+#include "tests/drivers/parsed_line.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 /// What a parser makes of the last of some lines.
-struct LastLine {
-  FrameLineParser::Kind kind{};
-  std::string expected;
-  std::ptrdiff_t column{-1};
-  CanFrame frame;
-  std::string interface;
-};
 template <class Parser>
-LastLine last_of(const std::vector<std::string>& lines) {
+ParsedLine last_of(const std::vector<std::string>& lines) {
   Parser parser;
-  LastLine out;
-  for (const std::string& line : lines) {
-    out = {};
-    std::string_view interface;
-    const auto found = parser.parse(line, out.frame, interface);
-    out.kind = found.kind;
-    out.expected = found.expected == nullptr ? "" : found.expected;
-    if (found.at != nullptr) out.column = found.at - line.data();
-    out.interface = interface;
-  }
+  ParsedLine out;
+  for (const std::string& line : lines) out = parsed(parser, line);
   return out;
 }
 
-LastLine asc(const std::string& line) { return last_of<AscParser>({line}); }
-LastLine trc(const std::string& version, const std::string& line) {
+ParsedLine asc(const std::string& line) { return last_of<AscParser>({line}); }
+ParsedLine trc(const std::string& version, const std::string& line) {
   return last_of<TrcParser>({";$FILEVERSION=" + version, line});
 }
 constexpr auto kFrame = FrameLineParser::Kind::kFrame;
@@ -45,7 +31,7 @@ constexpr auto kNoFrame = FrameLineParser::Kind::kNoFrame;
 constexpr auto kBad = FrameLineParser::Kind::kBad;
 
 TEST(AscLine, ReadsClassicFrames) {
-  const LastLine plain = asc(" 1.25 3 7FF Rx d 2 0A FF");
+  const ParsedLine plain = asc(" 1.25 3 7FF Rx d 2 0A FF");
   ASSERT_EQ(plain.kind, kFrame) << plain.expected;
   EXPECT_EQ(plain.frame.time_ns, 1'250'000'000);
   EXPECT_EQ(plain.interface, "can3");
@@ -53,7 +39,7 @@ TEST(AscLine, ReadsClassicFrames) {
   EXPECT_FALSE(plain.frame.extended || plain.frame.remote || plain.frame.fd || plain.frame.error);
   EXPECT_EQ(plain.frame.length, 2);
   EXPECT_EQ(plain.frame.data[1], 0xFF);
-  const LastLine wide = asc("1.0 255 1FFFFFFFX TxRq d 0");
+  const ParsedLine wide = asc("1.0 255 1FFFFFFFX TxRq d 0");
   EXPECT_TRUE(wide.frame.extended);
   EXPECT_EQ(wide.interface, "can255");
   EXPECT_EQ(asc("1.0 1 1x Tx d 9 1 2 3 4 5 6 7 8").frame.length, 8);
@@ -80,7 +66,7 @@ TEST(AscLine, PointsAtWhatDoesNotFit) {
         std::tuple{"1.0 CANFD 1 Rx 123 0 0 10 8", 23},
         std::tuple{"1.0 CANFD 1 Rx 123 0 0 f 65", 25},
         std::tuple{"1.0 CANFD 1 Rx 123 0 0 2 2 11 1G", 30}}) {
-    const LastLine out = asc(line);
+    const ParsedLine out = asc(line);
     EXPECT_EQ(out.kind, kBad) << line;
     EXPECT_EQ(out.column, column) << line;
   }
@@ -102,7 +88,7 @@ TEST(AscLine, TakesBaseAndRelativeTimesFromTheHeader) {
 }
 
 TEST(AscLine, ReadsCanFdFrames) {
-  const LastLine out =
+  const ParsedLine out =
       asc("1.0 CANFD 2 Rx 1ABCDEFx Name 1 1 9 12 1 2 3 4 5 6 7 8 9 A B C 130 130 3000");
   ASSERT_EQ(out.kind, kFrame) << out.expected;
   EXPECT_TRUE(out.frame.fd && out.frame.extended);
@@ -111,7 +97,7 @@ TEST(AscLine, ReadsCanFdFrames) {
   EXPECT_EQ(out.frame.data[11], 0x0C);
   EXPECT_EQ(asc("1.0 CANFD 1 Rx 1 1 0 1 1 5 130 130 3000").frame.fd_flags, 1);
   EXPECT_EQ(asc("1.0 CANFD 1 Rx 1 0 1 1 1 5 130 130 1000").frame.fd_flags, 2);
-  const LastLine remote = asc("1.0 CANFD 1 Rx 1 0 0 4 0 130 130 10");
+  const ParsedLine remote = asc("1.0 CANFD 1 Rx 1 0 0 4 0 130 130 10");
   EXPECT_TRUE(remote.frame.remote);
   EXPECT_FALSE(remote.frame.fd);
   EXPECT_EQ(remote.frame.length, 4);
@@ -130,7 +116,7 @@ TEST(TrcLine, ReadsEachTypeOfFrame) {
         std::tuple{"FB", true, 1, false, false}, std::tuple{"FE", true, 2, false, false},
         std::tuple{"BI", true, 3, false, false}, std::tuple{"RR", false, 0, true, false},
         std::tuple{"ER", false, 0, false, true}}) {
-    const LastLine out = trc("2.0", std::string{" 1 1059.9 "} + type + " 0300 Rx 2 01 02");
+    const ParsedLine out = trc("2.0", std::string{" 1 1059.9 "} + type + " 0300 Rx 2 01 02");
     ASSERT_EQ(out.kind, kFrame) << type;
     EXPECT_EQ(out.frame.time_ns, 1'059'900'000);
     EXPECT_EQ(out.interface, "can1");
@@ -177,14 +163,14 @@ TEST(TrcLine, ReadsBusesFromOneOn) {
 }
 
 TEST(TrcLine, ARemoteFrameMaySayRtr) {
-  const LastLine out = trc("1.1", "1) 1.0 Rx 0300 3 RTR");
+  const ParsedLine out = trc("1.1", "1) 1.0 Rx 0300 3 RTR");
   EXPECT_TRUE(out.frame.remote);
   EXPECT_EQ(out.frame.length, 3);
   EXPECT_EQ(trc("1.1", "1) 1.0 Rx 0300 3 11 22").kind, kBad);
 }
 
 TEST(TrcLine, TakesItsColumnsFromTheHeader) {
-  const LastLine out =
+  const ParsedLine out =
       last_of<TrcParser>({";$FILEVERSION=2.0", ";$COLUMNS=I, O, T, l, D  ", "0300 7.5 DT 1 AB"});
   ASSERT_EQ(out.kind, kFrame) << out.expected;
   EXPECT_EQ(out.frame.id, 0x300U);

@@ -9,6 +9,7 @@
 
 #include "drivers/candump/interface_table.hpp"
 #include "drivers/candump/screen.hpp"
+#include "tests/drivers/parsed_line.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
@@ -17,26 +18,15 @@ namespace {
 using Kind = FrameLineParser::Kind;
 
 /// What a new parser makes of one line.
-struct OfScreen {
-  Kind kind{};
-  std::string expected;
-  std::ptrdiff_t column{-1};
-  CanFrame frame;
-  std::string interface;
+struct OfScreen : ParsedLine {
   RecordClock clock{};
 };
 OfScreen screen_line(const std::string& line) {
   CandumpScreen parser{false, std::nullopt};
-  OfScreen out;
-  out.frame.data.fill(0xEE);
-  std::string_view interface;
-  const auto found = parser.parse(line, out.frame, interface);
-  out.kind = found.kind;
-  out.expected = found.expected == nullptr ? "" : found.expected;
-  if (found.at != nullptr) out.column = found.at - line.data();
-  out.interface = interface;
-  out.clock = parser.clock();
-  return out;
+  CanFrame before;
+  before.data.fill(0xEE);
+  const ParsedLine out = parsed(parser, line, before);
+  return {out, parser.clock()};
 }
 
 std::int64_t time_of(const std::string& text) {
