@@ -25,7 +25,6 @@ constexpr double kSmallMisfit = 0.005;
 constexpr double kMisfitOfSticking = 3.0;
 constexpr double kWidestLawMps = 6e-3;  // a wider one is no error of the velocity
 constexpr double kStickMps = 2e-3;      // below it a truck counts as sticking
-constexpr double kRigMisfit = 0.09;     // rrse 0.3
 constexpr double kNothingFitted = 0.8;  // of the variance, left
 constexpr double kSure = 3.0;           // deviations
 constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity

@@ -22,6 +22,8 @@ struct Explaining {
 
 /// Of the wheelsets, rms: a running car shakes more, in g it seems to shake less.
 inline constexpr double kLeastShakingMps2 = 0.7;
+/// Nmse (rrse 0.3) that neither a rig's model nor what errors of its motion make may leave.
+inline constexpr double kRigMisfit = 0.09;
 
 /// The one rule, for trucks and rigs, files and live runs: sets trust and its reasons, the gravest
 /// first, and the headline, which states numbers only where they are trusted. Without an

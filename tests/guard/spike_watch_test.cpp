@@ -90,6 +90,18 @@ TEST(SpikeWatch, WhatGoesOnIsJudgedEveryFortySamples) {
   EXPECT_EQ(strikes_of(train).size(), 4U);
 }
 
+// Forty samples after the first the event ends, but not before the largest has its neighbours.
+TEST(SpikeWatch, KeepsTheLargestThoughTheEventEndsThere) {
+  for (std::int64_t last = 234; last <= 242; ++last) {
+    std::map<std::int64_t, std::int64_t> train;
+    for (std::int64_t tick = 200; tick < last - 5; tick += 10) train[tick] = 60;
+    train[last] = 200;
+    bool kept = false;
+    for (const Strike& strike : strikes_of(train)) kept |= strike.tick == last && strike.digital;
+    EXPECT_TRUE(kept) << last;
+  }
+}
+
 TEST(SpikeWatch, KeepsTheTwentyFourHighestOfASegment) {
   std::map<std::int64_t, std::int64_t> many;
   for (std::int64_t i = 0; i < 26; ++i) many[100 + 18 * i] = i == 7 ? 40 : i == 9 ? 41 : 60 + i;

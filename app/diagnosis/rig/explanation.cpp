@@ -8,6 +8,7 @@
 #include "app/diagnosis/common/evidence.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
 #include "app/diagnosis/rig/trials.hpp"
+#include "app/run/trust.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -172,6 +173,8 @@ bool Explanation::is_complete() const noexcept {
   if (moved && std::min(run.nmse_of_motion, run.nmse_of_equations) > kMisses) return false;
   const double nmse = final.fit.held_out_nmse;
   if (nmse < kNegligible) return true;
+  const double noise_nmse = final.floor_noise_share * final.floor_nmse;
+  if (nmse - kIncompleteAbove * noise_nmse > kRigMisfit) return false;
   const double above = kMotionAbove + (kIncompleteAbove - kMotionAbove) * final.floor_noise_share;
   const double structured = std::max(signature.travel_share, signature.surface_share);
   return nmse <= above * final.floor_nmse && !(noise && structured > kStructured);

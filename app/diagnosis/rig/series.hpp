@@ -70,6 +70,11 @@ struct Series {
   return 3 + series.config.velocity_half_width;
 }
 
+/// Whether every record moves to and fro at least once over its whole range before that share of
+/// it, and once after. A friction with memory does not know its state at the first sample, and what
+/// it makes of the first stroke is no change.
+[[nodiscard]] bool cycles_before_and_after(const std::vector<Series>& records, double share);
+
 /// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
 /// naming the file, what was found and what was expected.
 [[nodiscard]] Series read_series(const std::string& path, const Config& config, bool skip_bad_lines,

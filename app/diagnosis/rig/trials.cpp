@@ -235,11 +235,15 @@ std::optional<Trial> try_skew(const std::vector<Series>& records, const TrialBas
 std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBase& base) {
   const std::vector<Drifting> drifting = what_may_drift(records, base);
   std::vector<Regressor> columns;
-  for (const Drifting& d : drifting) {
-    for (std::size_t place = 0; place < kStepPlaces; ++place) {
+  std::vector<const char*> names;
+  for (std::size_t place = 0; place < kStepPlaces; ++place) {
+    const double share = static_cast<double>(place) / kStepPlaces;
+    if (place > 0 && !cycles_before_and_after(records, share)) continue;
+    for (const Drifting& d : drifting) {
       columns.push_back(d.column);
       columns.back().time = place == 0 ? Regressor::Time::kSlope : Regressor::Time::kStep;
-      columns.back().at = static_cast<double>(place) / kStepPlaces;
+      columns.back().at = share;
+      names.push_back(d.name);
     }
   }
   const TrialFits fits{records, base, columns};
@@ -253,7 +257,7 @@ std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBa
     if (!fit.beats(best.fit)) continue;
     best.fit = std::move(fit);
     best.columns = {columns[c]};
-    best.parameter = drifting[c / kStepPlaces].name;
+    best.parameter = names[c];
     best.at_share = columns[c].time == Regressor::Time::kSlope ? -1.0 : columns[c].at;
   }
   if (best.columns.empty()) return std::nullopt;

@@ -33,6 +33,7 @@ void SpikeWatch::update(std::int64_t tick, std::int64_t code) noexcept {
     const bool strikes = static_cast<double>(change) > gate_ && gate_ > 0.0;
     if (strikes && (!open_ || change > open_change_)) {
       open_tick_ = tick - 1;
+      open_count_ = count_ - 2;
       open_change_ = change;
     }
     if (strikes) {
@@ -41,7 +42,12 @@ void SpikeWatch::update(std::int64_t tick, std::int64_t code) noexcept {
       since_ = 0;
     }
   }
-  if (open_ && (++since_ > kReach || ++length_ > kLongest)) settle();
+  if (open_) {
+    ++since_;
+    ++length_;
+    const bool whole = count_ - 1 - open_count_ >= kHalf;
+    if (since_ > kReach || (length_ > kLongest && whole)) settle();
+  }
   if (scale_ == 0.0 && in_segment_ % kRefresh == kRefresh - 1) gate_ = kGate * current_scale();
   if (++in_segment_ >= segment_ && !open_) end_segment();
 }
@@ -49,15 +55,10 @@ void SpikeWatch::update(std::int64_t tick, std::int64_t code) noexcept {
 void SpikeWatch::settle() noexcept {
   open_ = false;
   Candidate candidate{.tick = open_tick_, .change = open_change_};
-  constexpr auto kHalf = static_cast<std::int64_t>(kWindow / 2);
-  // Find the centre again by its second difference among what the ring still holds.
-  std::int64_t centre = -1;
-  for (std::int64_t back = kHalf;
-       back <= static_cast<std::int64_t>(kRing) - kHalf - 1 && back + kHalf < count_; ++back) {
-    if (std::abs(past(back + 1) - 2 * past(back) + past(back - 1)) == open_change_) centre = back;
-  }
   open_change_ = 0;
-  if (centre < 0) return;
+  const std::int64_t centre = count_ - 1 - open_count_;
+  // The first samples after a restart have no whole window around them.
+  if (centre + kHalf >= std::min<std::int64_t>(count_, kRing)) return;
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(kWindow); ++i) {
     candidate.codes[static_cast<std::size_t>(i)] = past(centre + kHalf - i);
   }

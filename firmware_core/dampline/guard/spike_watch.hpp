@@ -36,10 +36,11 @@ class SpikeWatch {
 
  private:
   static constexpr std::int64_t kReach = 12;  // samples without a change that end an event
-  static constexpr std::int64_t kLongest =
-      40;  // an event that goes on is judged by its largest change
+  // An event that goes on is judged by its largest change.
+  static constexpr std::int64_t kLongest = 40;
   static constexpr std::size_t kRing = 64;
   static constexpr std::size_t kWindow = 11;  // samples around the centre that are kept
+  static constexpr auto kHalf = static_cast<std::int64_t>(kWindow / 2);
   struct Candidate {
     std::int64_t tick{0};
     std::int64_t change{0};  // |second difference|
@@ -61,9 +62,10 @@ class SpikeWatch {
   std::array<std::int64_t, kRing> ring_{};
   MagnitudeHistogram changes_;
   double scale_{0.0};
-  double gate_{0.0};  // below it nothing can become a strike
-  bool open_{false};  // an event that may still grow
-  std::int64_t open_tick_{0};
+  double gate_{0.0};            // below it nothing can become a strike
+  bool open_{false};            // an event that may still grow
+  std::int64_t open_tick_{0};   // of the event's largest change
+  std::int64_t open_count_{0};  // its place in the ring
   std::int64_t open_change_{0};
   std::int64_t since_{0};   // samples since the event last exceeded the gate
   std::int64_t length_{0};  // of the open event

@@ -27,7 +27,7 @@ double lift(double relative, int order, double share, double beyond) noexcept {
 
 double VelocityLift::share_of_loss(double corner_hz) noexcept {
   constexpr double kHighCornerHz = 100.0;
-  constexpr double kLowCornerHz = 70.0;
+  constexpr double kLowCornerHz = 76.0;
   const double low =
       std::clamp((kHighCornerHz - corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
   return std::lerp(0.22, 1.0, low);
