@@ -50,6 +50,7 @@ PARTS = {
     "diagnosis_pairs": "Two missing effects at once",
     "guards": "Faults",
     "sensors": "Coarse, noisy, slow and unfiltered sensors",
+    "places": "Sensors that sit elsewhere",
     "combinations": "Faults beside effects, faults and changed parameters",
     "drifting": "Parameters that change",
     "months": "The live alarm over months",

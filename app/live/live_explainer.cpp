@@ -111,6 +111,7 @@ void LiveExplainer::judge() {
                   *explainer_, out))
     return;
   needless_ = out.needless;
+  take_misplaced(view, rate_hz(), out);
   const double of_s = other_.look({config_, guarded_}, floor_, copied_s_, *explainer_, out);
   const std::lock_guard<std::mutex> lock{mutex_};
   newest_ = std::move(out);

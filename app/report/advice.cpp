@@ -99,6 +99,18 @@ constexpr std::array kFaults{
         "when it was sampled. Let the sensors sample by one clock, or by a timer of their own, "
         "and number the frames.",
         "See how the recorder times its samples."},
+    Advice{"ringing_mount", "What a sensor is mounted on rings",
+           "Knock on the sensor's bracket: it must not sound. Mount the sensor on the frame or the "
+           "axle box itself, or on a bracket that is stiff beyond half the sampling rate.",
+           kAnyRig},
+    Advice{"off_centre", "The frame's sensor does not sit over the middle",
+           "Mount it half way between the wheelsets, or add a second one over the frame's end and "
+           "state it in the configuration.",
+           kAnyRig},
+    Advice{"foreign_motion", "These three sensors do not tell the motion of this truck",
+           "Are all three on the same side, upright, and on the same truck? Does the truck hunt? "
+           "Sensors on both sides, or one where the frame does not roll, tell more.",
+           kAnyRig},
     Advice{"wrong_value", "Single wrong values in a column", "", kAnyRig},
     Advice{"wrong_time", "Lines whose time is out of order", "",
            "See whether the file was joined from pieces, or the recorder's clock was set while it "

@@ -34,8 +34,11 @@ enum class FaultKind : std::uint8_t {
   kWrongSampleRate,    ///< rate, wheelbase or speed are not what was declared
   kIdenticalChannels,  ///< a channel shows what another one does, code for code
   kJitter,             ///< samples are taken at uneven times
+  kRingingMount,       ///< what a sensor is mounted on has a resonance of its own
+  kOffCentre,          ///< the frame's sensor sees the frame's pitch
+  kForeignMotion,      ///< the frame does below its resonance what no wheelset does
 };
-inline constexpr std::size_t kFaultKinds = 18;
+inline constexpr std::size_t kFaultKinds = 21;
 
 /// Where a fault is. What compares the two wheelsets cannot tell which of them it is.
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
@@ -56,20 +59,20 @@ struct Fault {
 /// The name that reports and files use.
 [[nodiscard]] constexpr const char* name_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kNames{
-      "clipping",          "stuck_channel",      "spikes",
-      "dc_jump",           "lost_samples",       "repeated_samples",
-      "timing_step",       "clock_drift",        "gain_change",
-      "soft_saturation",   "excess_noise",       "noise_burst",
-      "resolution_loss",   "swapped_channels",   "wrong_polarity",
-      "wrong_sample_rate", "identical_channels", "jitter"};
+      "clipping",           "stuck_channel",    "spikes",         "dc_jump",
+      "lost_samples",       "repeated_samples", "timing_step",    "clock_drift",
+      "gain_change",        "soft_saturation",  "excess_noise",   "noise_burst",
+      "resolution_loss",    "swapped_channels", "wrong_polarity", "wrong_sample_rate",
+      "identical_channels", "jitter",           "ringing_mount",  "off_centre",
+      "foreign_motion"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 /// The unit of Fault::size; "-" and "ratio" have none.
 [[nodiscard]] constexpr const char* unit_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kUnits{
-      "m/s^2", "s",     "m/s^2", "m/s^2", "samples", "samples", "s",  "ppm", "%",
-      "%",     "m/s^2", "m/s^2", "m/s^2", "ratio",   "-",       "Hz", "-",   "s"};
+      "m/s^2", "s",     "m/s^2", "m/s^2", "samples", "samples", "s", "ppm", "%", "%", "m/s^2",
+      "m/s^2", "m/s^2", "ratio", "-",     "Hz",      "-",       "s", "Hz",  "%", "%"};
   return kUnits[static_cast<std::size_t>(kind)];
 }
 
@@ -121,6 +124,16 @@ struct FrameFollow {
   double trend_significance{0.0};
 };
 
+/// How the sensors sit, as the motion itself tells: see PlaceWatch. 0: not known yet.
+struct Misplacement {
+  double foreign_share{0.0};  ///< of the frame's power at 1.2 Hz: neither of wheelsets nor noise
+  /// Of half the wheelsets' difference, that the frame shows at 3.5 to 7.6 Hz; and how much that is
+  /// of what the wheelsets' mean leaves of the frame's power there.
+  double difference{0.0};
+  double difference_share{0.0};
+  double gain{0.0};  ///< of wheelset 1 over wheelset 2, by their power there; less 1
+};
+
 /// The faults at one moment, times in seconds by the nominal rate. Plain: it can be handed between
 /// threads; some 4 KiB.
 struct FaultView {
@@ -129,6 +142,7 @@ struct FaultView {
   GuardInputs inputs;
   RepairCounts repairs;
   FrameFollow frame_follow;
+  Misplacement misplacement;
   [[nodiscard]] std::span<const Fault> list() const noexcept { return {faults.data(), count}; }
 };
 

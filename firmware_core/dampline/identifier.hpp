@@ -161,6 +161,7 @@ class BasicIdentifier {
     out.repairs.bridged = bridge_.figures();
     out.repairs.placed = placer_.figures();
     out.frame_follow = guard_.frame_follow();
+    out.misplacement = guard_.misplacement();
     return out;
   }
   [[nodiscard]] const AlarmView& alarms() const noexcept requires(kParts.alarms) {

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/diagnosis/truck/explain.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
 #include "app/identify/identify_source.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
@@ -35,6 +38,13 @@ struct PlainSensors {
   double noise_mps2{0.02};  ///< white, rms
   int bits{12};             ///< of 20 m/s^2 for the frame, 120 m/s^2 for wheelsets
   double jitter_s{0.0};     ///< rms, of each channel by itself
+  // Where they sit, and what else they see.
+  double off_centre_m{0.0};       ///< of the frame's, which sees its pitch there
+  double roll{0.0};               ///< of the wheelsets', over their vertical motion
+  bool frame_rolls{false};        ///< the frame's sees that too, below 3 Hz
+  double hunting_mps2{0.0};       ///< rms of what the frame's sees of a motion at 2.5 Hz
+  double frame_mount_hz{0.0};     ///< resonance of what the frame's is mounted on; 0: none
+  double wheelset_mount_hz{0.0};  ///< the same of wheelset 1
 };
 
 namespace plain {
@@ -105,6 +115,50 @@ inline Signal frame(const PlainTruck& truck, const Signal& first, const Signal& 
   return out;
 }
 
+/// x'' + 2 D w x' + w^2 x = w^2 u.
+inline void resonate(double hz, double damping, Signal& signal) {
+  const double h = 1.0 / kFineHz;
+  const double w = kTwoPi * hz;
+  double x = 0.0, v = 0.0;
+  for (double& u : signal) {
+    v += h * (w * w * (u - x) - 2.0 * damping * w * v);
+    x += h * v;
+    u = x;
+  }
+}
+
+/// What sensors see that sit elsewhere, of their own accelerations: frame, wheelset 1, wheelset 2.
+/// The frame pitches with the wheelsets' difference, with a resonance at 8 Hz.
+inline void misplace(const PlainTruck& truck, const PlainSensors& sensors, std::uint64_t seed,
+                     std::array<Signal, 3>& seen) {
+  const std::size_t count = seen[0].size();
+  std::mt19937_64 random{seed + 1000};
+  Signal more(count);
+  const auto add = [&seen](std::size_t channel, const Signal& what) {
+    for (std::size_t i = 0; i < what.size(); ++i) seen[channel][i] += what[i];
+  };
+  if (sensors.off_centre_m != 0.0) {
+    for (std::size_t i = 0; i < count; ++i)
+      more[i] = sensors.off_centre_m * (seen[1][i] - seen[2][i]) / kWheelbaseM;
+    resonate(8.0, 0.2, more);
+    add(0, more);
+  }
+  if (sensors.roll > 0.0) {
+    const auto lag = static_cast<std::size_t>(kWheelbaseM / truck.speed_mps * kFineHz);
+    const Signal rail = road(count + lag, truck.speed_mps, random);
+    for (std::size_t i = 0; i < count; ++i) {
+      seen[1][i] += sensors.roll * rail[i + lag];
+      seen[2][i] += sensors.roll * rail[i];
+      more[i] = 0.5 * sensors.roll * (rail[i] + rail[i + lag]);
+    }
+    resonate(3.0, 0.2, more);
+    if (sensors.frame_rolls) add(0, more);
+  }
+  if (sensors.hunting_mps2 > 0.0) add(0, band(count, 2.5, 0.03, sensors.hunting_mps2, random));
+  if (sensors.frame_mount_hz > 0.0) resonate(sensors.frame_mount_hz, 0.03, seen[0]);
+  if (sensors.wheelset_mount_hz > 0.0) resonate(sensors.wheelset_mount_hz, 0.03, seen[1]);
+}
+
 inline void low_pass(double corner_hz, Signal& signal) {
   const double k = std::tan(0.5 * kTwoPi * corner_hz / kFineHz);
   for (const double damping : {1.847759065, 0.7653668647}) {
@@ -136,6 +190,7 @@ inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sen
   seen[1].assign(rail.begin() + static_cast<std::ptrdiff_t>(lag), rail.end());
   seen[2].assign(rail.begin(), rail.begin() + static_cast<std::ptrdiff_t>(count));
   seen[0] = frame(truck, seen[1], seen[2]);
+  misplace(truck, sensors, seed, seen);
   if (sensors.corner_hz > 0.0)
     for (Signal& each : seen) low_pass(sensors.corner_hz, each);
   std::normal_distribution<double> normal;
@@ -157,16 +212,48 @@ inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sen
   return text;
 }
 
-/// What `identify` makes of such a record when it is told of mass, rate and low pass.
-inline app::RunResult identified_from(const PlainTruck& truck, const PlainSensors& sensors,
-                                      double length_s, std::uint64_t seed) {
-  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
+/// Told of mass, rate and low pass.
+inline app::Config plain_config(const PlainTruck& truck, const PlainSensors& sensors) {
   app::Config config;
   config.car.moving_mass_kg = truck.mass_kg;
   config.input.sample_rate_hz = sensors.rate_hz;
   config.input.anti_alias.corner_hz = sensors.corner_hz;
-  return app::identify_source(config, {file.path(), false}, app::SourceKind::kTruckRows, false)
+  return config;
+}
+
+/// What `identify` makes of such a record.
+inline app::RunResult identified_from(const PlainTruck& truck, const PlainSensors& sensors,
+                                      double length_s, std::uint64_t seed) {
+  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
+  return app::identify_source(plain_config(truck, sensors), {file.path(), false},
+                              app::SourceKind::kTruckRows, false)
       .result;
+}
+
+struct PlainExplained {
+  app::Explanation explanation;
+  app::RunResult result;
+  [[nodiscard]] bool has_fault(const std::string& name) const {
+    const auto& list = result.faults.list;
+    return std::any_of(list.begin(), list.end(), [&](const auto& f) { return f.name == name; });
+  }
+  /// Of the suspension or of its sensors.
+  [[nodiscard]] bool names_effect() const {
+    const auto& steps = explanation.steps;
+    return std::any_of(steps.begin(), steps.end(),
+                       [](const auto& step) { return step.effect != "unknown"; });
+  }
+};
+
+/// What `explain` makes of it.
+inline PlainExplained explained_from(const PlainTruck& truck, const PlainSensors& sensors,
+                                     double length_s, std::uint64_t seed) {
+  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
+  app::Explained explained =
+      app::explain_truck(plain_config(truck, sensors), {{file.path(), false}, {}, false});
+  app::RunResult result = std::move(explained.identified);
+  app::Explanation explanation = app::conclude(explained, result);
+  return {std::move(explanation), std::move(result)};
 }
 
 }  // namespace dampline::test

@@ -63,6 +63,7 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out, reading.search);
+    name_misplaced(out);
     const effect::Effect needless = needless_effect(out.explanation);
     if (needless == effect::Effect::kUnknown) return;
     out.needless[static_cast<std::size_t>(needless)] = true;
@@ -84,6 +85,16 @@ void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
 }
 
 }  // namespace
+
+void take_misplaced(TruckView view, double rate_hz, Explained& out) {
+  view.faults = out.circumstances.faults;
+  DataFaults& faults = out.identified.faults;
+  const DataFaults all = faults_of(view, rate_hz);
+  faults.list.insert(faults.list.end(),
+                     all.list.begin() + static_cast<std::ptrdiff_t>(faults.list.size()),
+                     all.list.end());
+  faults.lasting = all.lasting;
+}
 
 std::shared_ptr<const OtherTruck> other_in(const Config& config, const OtherTruckSearch& search,
                                            double velocity_rms_mps, const Explained& without) {
@@ -116,6 +127,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   explain_pass(reading, pass, out);
   look_for_other(reading, pass, out);
   effect::name_nothing_impossible(out.explanation);
+  take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)
     out.validation.push_back(

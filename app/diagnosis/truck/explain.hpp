@@ -8,6 +8,7 @@
 #include "app/config/config.hpp"
 #include "app/diagnosis/common/explanation.hpp"
 #include "app/diagnosis/truck/other_truck.hpp"
+#include "app/identify/truck_run.hpp"
 #include "app/record/feed.hpp"
 #include "app/run/provenance.hpp"
 #include "app/run/result.hpp"
@@ -42,6 +43,9 @@ struct Explained : effect::Judgement {
                                                          const Explained& without);
 /// Whether an explanation `with` it is the better one.
 [[nodiscard]] bool other_leaves_less(const Explained& with, const Explained& without) noexcept;
+
+/// Sensors that do not tell this truck's motion join the faults that identify found.
+void take_misplaced(TruckView view, double rate_hz, Explained& out);
 
 struct ExplainOptions {
   SourceOptions source;

@@ -213,6 +213,7 @@ void BlockSurvey::power(std::size_t k) noexcept {
 void BlockSurvey::conclude_power() noexcept {
   const double density = 2.0 / (rate_hz_ * kHannPower * static_cast<double>(Fourier512::kSize) *
                                 static_cast<double>(std::max<std::uint32_t>(block_->segments, 1U)));
+  figures_.density = density;
   figures_.coherent_share = s_.coherent / shared_.bins();
   if (s_.phase_weight > 0.0) {
     figures_.delay_s = static_cast<double>(block_->delay) / rate_hz_ -

@@ -71,6 +71,7 @@ class LagTracker {
 struct BlockFigures {
   std::int64_t first_tick{0};
   std::int64_t last_tick{0};
+  double density{0.0};         ///< (m/s^2)^2/Hz of a unit of the block's sums
   int delay{0};                ///< samples by which wheelset 1 was delayed
   double coherent_share{0.0};  ///< of the bins of 4-90 Hz: the wheelsets' coherence is above 0.4
   double match{0.0};        ///< signed peak of the whitened correlation of the wheelsets, 1 at most

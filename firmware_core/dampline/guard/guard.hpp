@@ -68,6 +68,7 @@ class Guard {
   /// Of the newest block of spectra that was judged.
   [[nodiscard]] const BlockFigures& block() const noexcept { return spectral_.figures(); }
   [[nodiscard]] FrameFollow frame_follow() const noexcept { return spectral_.frame_follow(); }
+  [[nodiscard]] Misplacement misplacement() const noexcept { return spectral_.misplacement(); }
   /// White noise of a channel, rms, what its resolution makes included; 0: not known yet.
   [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept {
     return spectral_.noise_mps2(channel);

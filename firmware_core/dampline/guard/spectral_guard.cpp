@@ -47,7 +47,8 @@ SpectralGuard::SpectralGuard(const GuardConfig& config) noexcept
     : config_{config},
       spectra_{config.sample_rate_hz},
       survey_{config.sample_rate_hz, config.anti_alias},
-      timing_{config.sample_rate_hz} {}
+      timing_{config.sample_rate_hz},
+      places_{config.sample_rate_hz} {}
 
 void SpectralGuard::restart() noexcept {
   spectra_.restart();
@@ -66,7 +67,8 @@ void SpectralGuard::advance(FaultLog& log, GuardInputs& inputs) noexcept {
     }
     const std::uint32_t enough = aligned_ ? PairSpectra::kSegmentsPerBlock : kFirstSegments;
     if (sums.segments >= enough && !survey_.busy() && next_ == Test::kNone) {
-      survey_.start(spectra_.take());
+      block_ = &spectra_.take();
+      survey_.start(*block_);
     }
     return;
   }
@@ -104,7 +106,11 @@ void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
     case Test::kGain:
       following_.add(survey_.figures().following, survey_.figures().last_tick);
       if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(log);
-      next_ = Test::kRate;
+      places_.start(*block_, survey_.figures());
+      next_ = Test::kPlaces;
+      return;
+    case Test::kPlaces:
+      next_ = places_.advance(log) ? Test::kRate : Test::kPlaces;
       return;
     case Test::kRate:
       if (steady_) judge_rate(log);
@@ -198,7 +204,8 @@ void SpectralGuard::judge_gain(FaultLog& log) noexcept {
 
 void SpectralGuard::judge_rate(FaultLog& log) noexcept {
   if (config_.wheelbase_m <= 0.0 || config_.speed_mps <= 0.0) return;
-  // Where a channel is out of step the delay says nothing of the rate.
+  // Where a channel is out of step or rings the delay says nothing of the rate.
+  if (log.has(FaultKind::kRingingMount)) return;
   for (const FaultKind kind : {FaultKind::kClockDrift, FaultKind::kTimingStep,
                                FaultKind::kLostSamples, FaultKind::kRepeatedSamples}) {
     for (const FaultChannel channel :

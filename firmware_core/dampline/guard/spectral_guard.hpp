@@ -8,6 +8,7 @@
 #include "dampline/guard/config.hpp"
 #include "dampline/guard/fault_log.hpp"
 #include "dampline/guard/pair_spectra.hpp"
+#include "dampline/guard/place_watch.hpp"
 #include "dampline/guard/timing_watch.hpp"
 
 namespace dampline {
@@ -52,9 +53,10 @@ class SpectralGuard {
   [[nodiscard]] double noise_mps2(std::size_t channel) const noexcept;
 
   [[nodiscard]] FrameFollow frame_follow() const noexcept;
+  [[nodiscard]] Misplacement misplacement() const noexcept { return places_.misplacement(); }
 
  private:
-  enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kRate, kNoise, kBurst };
+  enum class Test : std::uint8_t { kNone, kOrder, kTiming, kGain, kPlaces, kRate, kNoise, kBurst };
 
   void take_block(FaultLog& log) noexcept;
   void judge(FaultLog& log, GuardInputs& inputs) noexcept;
@@ -73,6 +75,8 @@ class SpectralGuard {
   PairSpectra spectra_;
   BlockSurvey survey_;
   TimingWatch timing_;
+  PlaceWatch places_;
+  const SpectrumSums* block_{nullptr};  // that is judged
   BlockSeries gain_;
   BlockSeries following_;
   std::array<BlockSeries, 2> noise_{};  // of the frame; of both wheelsets together

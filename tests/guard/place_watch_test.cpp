@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "dampline/guard/place_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <random>
+
+namespace dampline {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kPlaceRateHz = 300.0;
+constexpr double kPlaceBinHz = kPlaceRateHz / 512.0;
+
+constexpr double kBehindS = 0.081;
+constexpr double kShared = 0.9;  // of their amplitude
+
+/// Blocks whose wheelsets are white, wheelset 2 behind; the frame is made of them.
+class SeenBlocks {
+ public:
+  using Frame = std::function<Complex(double hz, Complex mean, Complex half_difference)>;
+  Frame frame = [](double, Complex mean, Complex) { return 1.2 * mean; };
+  std::function<double(double hz)> gain1 = [](double) { return 1.0; };
+  double foreign = 0.0;      ///< rms in the frame, of the mean's
+  double noise_share = 0.0;  ///< of that, declared as noise
+
+  void add(int blocks) {
+    for (int i = 0; i < blocks; ++i) add();
+  }
+  [[nodiscard]] Misplacement figures() const { return watch_.misplacement(); }
+  [[nodiscard]] const FaultLog& log() const { return log_; }
+
+ private:
+  void add() {
+    const auto sums = std::make_unique<SpectrumSums>();
+    const auto draw = [this] { return Complex{normal_(random_), normal_(random_)}; };
+    for (sums->segments = 0; sums->segments < 12; ++sums->segments) {
+      for (std::size_t k = 1; k < kSpectrumBins; ++k) {
+        const double hz = static_cast<double>(k) * kPlaceBinHz;
+        const Complex one = draw();
+        const Complex behind = one * std::polar(1.0, -2.0 * std::numbers::pi * hz * kBehindS);
+        const Complex two = kShared * behind + std::sqrt(1.0 - kShared * kShared) * draw();
+        const Complex first = gain1(hz) * one;
+        const Complex mean = 0.5 * (first + two);
+        const Complex seen = frame(hz, mean, 0.5 * (first - two)) + foreign * draw();
+        sums->frame[k] += std::norm(seen);
+        sums->wheelset1[k] += std::norm(first);
+        sums->wheelset2[k] += std::norm(two);
+        sums->delayed1[k] += std::norm(first);
+        sums->mean[k] += std::norm(mean);
+        sums->wheelsets[k] += std::conj(first) * two;
+        sums->frame_to[0][k] += std::conj(first) * seen;
+        sums->frame_to[1][k] += std::conj(two) * seen;
+      }
+    }
+    BlockFigures block;
+    block.density = 1e-3;
+    block.noise[0] = noise_share * foreign * foreign * 2.0 * 12.0 * block.density;
+    watch_.start(*sums, block);
+    while (!watch_.advance(log_)) {
+    }
+  }
+
+  std::mt19937_64 random_{17};
+  std::normal_distribution<double> normal_;
+  FaultLog log_{kPlaceRateHz};
+  PlaceWatch watch_{kPlaceRateHz};
+};
+
+TEST(PlaceWatch, KnowsNothingBeforeSixBlocks) {
+  SeenBlocks blocks;
+  blocks.foreign = 0.5;
+  blocks.add(5);
+  EXPECT_EQ(blocks.figures().foreign_share, 0.0);
+  blocks.add(1);
+  EXPECT_GT(blocks.figures().foreign_share, 0.0);
+}
+
+TEST(PlaceWatch, SeesNothingWhereTheFrameFollowsTheMean) {
+  SeenBlocks blocks;
+  blocks.add(10);
+  EXPECT_NEAR(blocks.figures().foreign_share, 0.0, 1e-9);
+  EXPECT_NEAR(blocks.figures().difference, 0.0, 1e-9);
+  EXPECT_TRUE(blocks.log().faults().empty());
+}
+
+/// Power of the frame: 1.44 of the mean's and the foreign one's.
+TEST(PlaceWatch, MeasuresTheForeignShare) {
+  SeenBlocks blocks;
+  blocks.foreign = 0.3;
+  blocks.add(40);
+  const double turn = 2.0 * std::numbers::pi * 2.0 * kPlaceBinHz * kBehindS;
+  const double mean = 0.5 * (1.0 + kShared * std::cos(turn));
+  const double share = 0.09 / (0.09 + 1.44 * mean);
+  EXPECT_NEAR(blocks.figures().foreign_share, share, 0.1 * share);
+}
+
+TEST(PlaceWatch, TakesOneAndAHalfTimesTheNoiseOff) {
+  SeenBlocks blocks;
+  blocks.foreign = 0.3;
+  blocks.noise_share = 0.75;
+  blocks.add(40);
+  EXPECT_LT(blocks.figures().foreign_share, 0.03);
+}
+
+TEST(PlaceWatch, MeasuresHowMuchOfTheDifferenceTheFrameShows) {
+  SeenBlocks blocks;
+  blocks.foreign = 0.1;
+  blocks.frame = [](double, Complex mean, Complex half_difference) {
+    return 0.8 * mean + Complex{0.15, -0.08} * half_difference;
+  };
+  blocks.add(20);
+  EXPECT_NEAR(blocks.figures().difference, 0.17, 0.01);
+  EXPECT_GT(blocks.figures().difference_share, 0.3);
+  EXPECT_LT(blocks.figures().difference_share, 1.0);
+}
+
+TEST(PlaceWatch, MeasuresTheGainOfWheelsetOne) {
+  SeenBlocks blocks;
+  blocks.gain1 = [](double) { return 1.07; };
+  blocks.add(40);
+  EXPECT_NEAR(blocks.figures().gain, 0.07, 0.01);
+}
+
+double ringing_gain(double hz, double resonance_hz) {
+  const double r = hz / resonance_hz;
+  return 1.0 / std::hypot(1.0 - r * r, 2.0 * 0.03 * r);
+}
+
+TEST(PlaceWatch, NamesAMountThatRingsAfterThreeBlocks) {
+  for (const double at_hz : {35.0, 70.0, 90.0}) {
+    SeenBlocks blocks;
+    blocks.frame = [at_hz](double hz, Complex mean, Complex) {
+      return ringing_gain(hz, at_hz) * mean;
+    };
+    blocks.gain1 = [](double) { return 1.02; };
+    blocks.add(2);
+    EXPECT_TRUE(blocks.log().faults().empty());
+    blocks.add(2);
+    const Fault* const fault = blocks.log().find(FaultKind::kRingingMount, FaultChannel::kFrame);
+    ASSERT_NE(fault, nullptr) << at_hz;
+    EXPECT_NEAR(fault->size, at_hz, 3.0);
+    EXPECT_EQ(blocks.log().faults().size(), 1U);
+  }
+}
+
+TEST(PlaceWatch, TellsWhichWheelsetsMountRings) {
+  for (const bool first : {true, false}) {
+    SeenBlocks blocks;
+    blocks.gain1 = [first](double hz) {
+      return first ? ringing_gain(hz, 60.0) : 1.0 / ringing_gain(hz, 60.0);
+    };
+    blocks.frame = [](double, Complex, Complex) { return Complex{}; };
+    blocks.add(3);
+    const FaultChannel channel = first ? FaultChannel::kWheelset1 : FaultChannel::kWheelset2;
+    const Fault* const fault = blocks.log().find(FaultKind::kRingingMount, channel);
+    ASSERT_NE(fault, nullptr) << first;
+    EXPECT_NEAR(fault->size, 60.0, 3.0);
+  }
+}
+
+/// Friction that turns at every half period of a motion makes lines at its odd multiples.
+TEST(PlaceWatch, TakesLinesForNoMount) {
+  SeenBlocks blocks;
+  blocks.frame = [](double hz, Complex mean, Complex) {
+    const double off = std::fmod(hz + 3.6, 7.2) - 3.6;
+    return (0.2 + 3.0 * std::exp(-off * off)) * mean;
+  };
+  blocks.add(10);
+  EXPECT_TRUE(blocks.log().faults().empty());
+}
+
+}  // namespace
+}  // namespace dampline
