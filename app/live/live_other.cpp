@@ -15,7 +15,7 @@ bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& flo
     effect::judge(sums, explainer_config(known.config, out), out.circumstances, explainer, out);
     if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
     floor.hold_against(sums.store, known.guarded, explainer, out);
-    name_misplaced(out);
+    hold_back(out);
     const effect::Effect needless = needless_effect(out.explanation);
     if (needless == effect::Effect::kUnknown) break;
     out.needless[static_cast<std::size_t>(needless)] = true;

@@ -82,5 +82,72 @@ TEST(TruckVerdict, CountsAParameterThatChangesAsAnEffect) {
   EXPECT_EQ(json.at("steps").at(0).at("note"), "like time_drift, law incomplete");
 }
 
+// Of 0.2 before and a floor of 0.1 an effect must take a hundredth where 0.15 is left.
+TEST(TruckVerdict, TakesBackWhatTakesHardlyAnyOfTheExcess) {
+  const auto held_back = [](double taken, double floor_nmse) {
+    Explained explained;
+    explained.explanation = explained_by_one_effect(taken / 0.2);
+    explained.explanation.floor_nmse = floor_nmse;
+    hold_back(explained);
+    return explained.explanation.step_count == 0;
+  };
+  EXPECT_TRUE(held_back(0.009, 0.1));
+  EXPECT_FALSE(held_back(0.011, 0.1));
+  EXPECT_FALSE(held_back(0.009, 0.13)) << "no more is left than sensors make";
+}
+
+Explained seen_with(const Misplacement& misplacement, double left_nmse, double floor_nmse) {
+  Explained explained;
+  explained.circumstances.faults.misplacement = misplacement;
+  explained.explanation.conclusion = effect::Conclusion::kUnexplained;
+  explained.explanation.final.held_out_nmse = left_nmse;
+  explained.explanation.floor_nmse = floor_nmse;
+  return explained;
+}
+
+std::string misplaced_by(Explained explained) {
+  hold_back(explained);
+  const auto list = explained.circumstances.faults.list();
+  EXPECT_EQ(explained.withheld, !list.empty());
+  return list.empty() ? "" : name_of(list.back().kind);
+}
+
+TEST(Misplaced, IsAFrameThatShowsTheDifferenceAndAModelThatLeavesMuch) {
+  EXPECT_EQ(misplaced_by(seen_with({.difference = 0.2, .difference_share = 0.4}, 0.12, 0.05)),
+            "off_centre");
+  EXPECT_EQ(misplaced_by(seen_with({.difference = 0.1, .difference_share = 0.4}, 0.12, 0.05)), "");
+  EXPECT_EQ(misplaced_by(seen_with({.difference = 0.2, .difference_share = 0.2}, 0.12, 0.05)), "");
+  EXPECT_EQ(misplaced_by(seen_with({.difference = 0.2, .difference_share = 0.4}, 0.09, 0.02)), "")
+      << "little is left";
+  EXPECT_EQ(misplaced_by(seen_with({.difference = 0.2, .difference_share = 0.4}, 0.12, 0.07)), "")
+      << "sensors make as much";
+}
+
+// Faint friction makes a truck swing by itself: then nothing is left.
+TEST(Misplaced, IsForeignMotionOnlyWhereMuchIsLeft) {
+  EXPECT_EQ(misplaced_by(seen_with({.foreign_share = 0.05}, 0.2, 0.05)), "foreign_motion");
+  EXPECT_EQ(misplaced_by(seen_with({.foreign_share = 0.5}, 0.001, 0.001)), "");
+  EXPECT_EQ(misplaced_by(seen_with({.foreign_share = 0.05}, 0.2, 0.08)), "");
+  EXPECT_EQ(misplaced_by(seen_with({.foreign_share = 0.02}, 0.2, 0.05)), "");
+  Explained wide = seen_with({.foreign_share = 0.02}, 0.2, 0.05);
+  wide.explanation.base.width_mps = 8e-3;
+  EXPECT_EQ(misplaced_by(wide), "foreign_motion") << "the velocity is wrong";
+}
+
+TEST(Misplaced, IsAGainThatThePowersDoNotShow) {
+  const auto named = [](const char* parameter, double gain, double by_power) {
+    Explained explained = seen_with({.difference = 0.05, .gain = by_power}, 0.05, 0.04);
+    explained.explanation.step_count = 1;
+    explained.explanation.step[0].chosen.effect = effect::Effect::kGainError;
+    explained.explanation.step[0].parameter[0] = {parameter, {gain, 0.001}};
+    return misplaced_by(explained);
+  };
+  EXPECT_EQ(named("gain_error_wheelset1", 0.05, 0.001), "off_centre");
+  EXPECT_EQ(named("gain_error_wheelset1", 0.05, 0.049), "");
+  EXPECT_EQ(named("gain_error_wheelset2", 0.05, 0.001), "off_centre");
+  EXPECT_EQ(named("gain_error_wheelset2", 0.05, -0.048), "");
+  EXPECT_EQ(named("gain_error_frame", 0.05, 0.001), "") << "that their powers cannot show";
+}
+
 }  // namespace
 }  // namespace dampline::app

@@ -63,7 +63,7 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out, reading.search);
-    name_misplaced(out);
+    hold_back(out);
     const effect::Effect needless = needless_effect(out.explanation);
     if (needless == effect::Effect::kUnknown) return;
     out.needless[static_cast<std::size_t>(needless)] = true;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kBelowFloor = 0.85;
 constexpr double kFaintGain = 0.025;
+constexpr double kShareOfExcess = 0.1;  // over the floor, that effects must take
 // Sensors out of place: bench/places, seeds 1 to 5, and every effect of `simulate` at 1.5 times its
 // usual strength. These leave at most 0.05, or 2.8 times the floor.
 constexpr double kMuchLeft = 0.1;
@@ -70,10 +71,7 @@ std::optional<FaultKind> misplaced(const Explained& explained) {
   return std::nullopt;
 }
 
-}  // namespace
-
 void name_misplaced(Explained& out) noexcept {
-  if (out.withheld || out.drifts) return;
   const auto kind = misplaced(out);
   FaultView& faults = out.circumstances.faults;
   if (!kind || faults.count == faults.faults.size()) return;
@@ -86,6 +84,21 @@ void name_misplaced(Explained& out) noexcept {
                                    .count = 1};
   out.withheld = true;
   effect::withhold_effects(out.explanation);
+}
+
+bool are_faint(const effect::Explanation& e) noexcept {
+  const double before = base_error(e);
+  const double taken = before - e.final.held_out_nmse;
+  return floor_ratio(e) > effect::kIncompleteAbove &&
+         taken < kShareOfExcess * (before - e.floor_nmse);
+}
+
+}  // namespace
+
+void hold_back(Explained& out) noexcept {
+  if (out.withheld || out.drifts) return;
+  name_misplaced(out);
+  if (are_faint(out.explanation)) effect::withhold_effects(out.explanation);
 }
 
 effect::ExplainerConfig explainer_config(const Config& config) {

@@ -21,9 +21,11 @@ namespace dampline::app {
 /// that left less without it than sensors and rounding do. kUnknown where each is needed.
 [[nodiscard]] effect::Effect needless_effect(const effect::Explanation& explanation) noexcept;
 
-/// Where the motion says that the sensors do not tell that of this truck, and the model leaves much
-/// of it too, or takes it for a wheelset's gain: that joins the faults, and no effect is named.
-void name_misplaced(Explained& out) noexcept;
+/// Takes back what was named without being it, once the floor is known. Where the motion says that
+/// the sensors do not tell that of this truck, and the model leaves much too or takes it for a
+/// wheelset's gain, that joins the faults. Where effects take hardly any of what stands over the
+/// floor and it still does, they only resemble what is missing.
+void hold_back(Explained& out) noexcept;
 
 /// What the final model leaves, held out: also where it has a parameter that changes.
 [[nodiscard]] double left_nmse(const Explained& explained) noexcept;
