@@ -217,6 +217,10 @@ struct Magnitudes {
   double wheelset_mps2{0.0};  ///< rms, 4 to 90 Hz
   double weight_n{0.0};       ///< of the moving mass
   double frame_follow{0.0};   ///< the frame's motion over the wheelsets', at 1.2 Hz; 0: not known
+  /// Of half the wheelsets' difference, that the frame shows at 3.5 to 7.6 Hz, and how much that is
+  /// of what their mean leaves of its power; 0: not known.
+  double pitch{0.0};
+  double pitch_share{0.0};
 };
 
 /// What identify says of a record that an explanation added to.

@@ -42,6 +42,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Sitting{"OnAWheelsetsMount", "ringing_mount", {.wheelset_mount_hz = 40.0}}),
     [](const auto& sitting) { return std::string{sitting.param.name}; });
 
+TEST(Places, AreDoubtedByIdentifyToo) {
+  for (const std::size_t which : {0U, 2U}) {
+    const test::PlainTruck& truck = kPlainTrucks.at(which);
+    const RunResult result = test::identified_from(truck, {.off_centre_m = 0.06}, 150.0, 62);
+    EXPECT_EQ(result.trust, Trust::kModelIncomplete) << truck.name;
+    ASSERT_FALSE(result.trust_reasons.empty()) << truck.name;
+    EXPECT_NE(result.trust_reasons.front().find("over the middle"), std::string::npos);
+  }
+}
+
 TEST(Places, AreSoundWhereTheyShouldBe) {
   for (const test::PlainTruck& truck : kPlainTrucks) {
     const test::PlainExplained found = explained_from(truck, {}, 150.0, 61);
