@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "dampline/basis/columns.hpp"
@@ -49,6 +50,14 @@ TEST(LawColumns, TheRampsTogetherAreTheVelocity) {
 TEST(LawColumns, AreOdd) {
   for (const double v : steps(0.0, 0.1, 0.37e-3))
     EXPECT_EQ((law_columns(v) + law_columns(-v)).cwiseAbs().maxCoeff(), 0.0) << v;
+}
+
+// Statistics of other years merge with today's only where these are the same.
+TEST(LawColumns, SegmentsAndWidthsAreThoseOfEveryState) {
+  EXPECT_EQ(kDefaultCurveNodesMps,
+            (CurveNodes{0.003, 0.0055, 0.008, 0.011, 0.0145, 0.019, 0.026, 0.040}));
+  EXPECT_EQ(kLawWidthMps, (std::array{0.0005, 0.0007, 0.001, 0.0014, 0.002, 0.0028, 0.004, 0.0056,
+                                      0.008, 0.011}));
 }
 
 TEST(LawColumns, TheWidthsIncrease) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "dampline/damping/estimator.hpp"
+#include "dampline/guard/alarm_watch.hpp"
 #include "dampline/guard/parameter_drift.hpp"
 #include "sim_hw/noise.hpp"
 #include "sim_hw/simulation.hpp"
@@ -108,6 +109,38 @@ TEST(GroupMeter, MeasuresTheNewestBlocksAlone) {
   EXPECT_NEAR(first / kCoulombMps2, 1.0, 0.02);
   EXPECT_NEAR(last / kCoulombMps2, 0.8, 0.02);
   EXPECT_NEAR(stiffness / (5.26e6 / 37200.0), 1.0, 0.05);
+}
+
+/// Five minutes fix the law and twenty groups of a minute are learnt, 1550 s or so; then the
+/// friction of a simulated car falls by 20 %.
+TEST(AlarmWatch, SaysWhatChangedAndSinceWhenAndWhenItNoticed) {
+  constexpr double kChangeS = 1600.0;
+  auto config = sim::reference_run(sim::Load::kLaden, 80.0, 31);
+  config.truck.drift.start_s = kChangeS;
+  config.truck.drift.friction_factor = 0.8;
+  sim::Simulation simulation{config};
+  const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
+  const auto watch = std::make_unique<AlarmWatch>(EstimatorConfig{});
+  EstimatorConfig forgetting;
+  forgetting.memory = Memory::kForgetting;
+  const auto silent = std::make_unique<AlarmWatch>(forgetting);
+  for (std::int64_t tick = 0; tick < 1860 * sim::kSampleRateHz; ++tick) {
+    const UpdateResult result = estimator->update(sim::to_sample(simulation.next()));
+    if (!result.block_closed) continue;
+    watch->take(result.block, tick, *estimator);
+    silent->take(result.block, tick, *estimator);
+  }
+  ASSERT_EQ(watch->view().count, 1U);
+  const AlarmView::Alarm& alarm = watch->view().alarms[0];
+  EXPECT_EQ(alarm.parameter, DriftingParameter::kFriction);
+  EXPECT_NEAR(alarm.change, -0.2, 0.05) << "its first group held both";
+  const auto seconds = [](std::int64_t ticks) {
+    return static_cast<double>(ticks) / sim::kSampleRateHz;
+  };
+  EXPECT_NEAR(seconds(alarm.since_tick), kChangeS, 62.0) << "the group's first tick";
+  EXPECT_GE(seconds(alarm.tick - alarm.since_tick), 175.0) << "three groups";
+  EXPECT_LE(seconds(alarm.tick), kChangeS + 260.0);
+  EXPECT_EQ(silent->view().count, 0U) << "where the sums forget";
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ class Track {
     guard_->set_difference(1.0);
   }
   double noise{0.02};  ///< of each sensor
+  double motion{4.0};  ///< of the track
   Change change{[](std::int64_t, Values&) {}};
 
   void run(double length_s) {
     for (int i = 0; i < static_cast<int>(length_s * kTrackRateHz); ++i, ++tick_) {
-      track_.push_back(4.0 * filter_.update({random_.normal()})[0]);
+      track_.push_back(motion * filter_.update({random_.normal()})[0]);
       const auto at = [&](std::int64_t n) {
         return n < 0 ? 0.0 : track_[static_cast<std::size_t>(n)];
       };
@@ -313,7 +314,7 @@ TEST(SpectralGuard, NoiseAmongImpactsIsNotJudged) {
 // Six times the usual power.
 TEST(SpectralGuard, NamesABurstAndItsBlocks) {
   for (const auto& [channel, size, named] :
-       {std::tuple{0U, 0.034, false}, std::tuple{0U, 0.055, true}}) {
+       {std::tuple{0U, 0.034, false}, std::tuple{0U, 0.05, true}}) {
     Track track{GuardConfig{}};
     track.change = noisy(channel, size, 150.0, 175.0);
     track.run(240.0);
@@ -332,6 +333,87 @@ TEST(SpectralGuard, NamesABurstAndItsBlocks) {
     EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 130 * 300));
     EXPECT_FALSE(track.log().spoilt(FaultKind::kNoiseBurst, where, 195 * 300));
     EXPECT_EQ(track.find(FaultKind::kGainChange), nullptr) << "no change of gain";
+  }
+}
+
+// The noise of one wheelset is what it does not share: it is measured where the track is stronger.
+constexpr double kStrong = 80.0;
+
+TEST(SpectralGuard, NamesNoiseOfAWheelset) {
+  for (const std::size_t channel : {1U, 2U}) {
+    for (const auto& [noise, named] : {std::pair{0.08, false}, std::pair{0.115, true}}) {
+      GuardConfig config;
+      config.noise_mps2[channel] = 0.05;
+      Track track{config};
+      track.motion = kStrong;
+      const Fault* const fault = noise_of(track, channel, noise);
+      ASSERT_EQ(fault != nullptr, named) << channel << ": " << noise;
+      if (!named) continue;
+      EXPECT_EQ(fault->channel, channel_of(channel));
+      EXPECT_NEAR(fault->size / noise, 0.9, 0.15);
+    }
+  }
+}
+
+// Where it differs from the usual, the wheelsets' own difference in time tells how much it is.
+TEST(SpectralGuard, NoiseOfAWheelsetIsNoMoreThanTheWheelsetsDiffer) {
+  for (const auto& [difference_mps2, named] : {std::pair{0.08, false}, std::pair{0.115, true}}) {
+    GuardConfig config;
+    config.noise_mps2[1] = 0.05;
+    Track track{config};
+    track.motion = kStrong;
+    track.guard().set_difference(difference_mps2);  // noise of 0.13 over 1.4 is 0.094
+    EXPECT_EQ(noise_of(track, 1, 0.15) != nullptr, named);
+  }
+}
+
+TEST(SpectralGuard, ASensorThatSaturatesMakesNoNoise) {
+  GuardConfig config;
+  config.noise_mps2.fill(0.05);
+  for (const std::size_t channel : {0U, 1U}) {
+    Track track{config};
+    track.motion = kStrong;
+    track.log().report(FaultKind::kSoftSaturation, FaultChannel::kWheelset2, 1.0, 1.0);
+    EXPECT_EQ(noise_of(track, channel, 0.4) != nullptr, channel == 0) << channel;
+  }
+}
+
+/// Whether so much noise of one sensor, from 150 s to 175 s, is a burst.
+bool bursts(std::size_t channel, double noise_mps2, const GuardConfig& config) {
+  Track track{config};
+  if (channel > 0) track.motion = kStrong;
+  track.change = noisy(channel, noise_mps2, 150.0, 175.0);
+  track.run(240.0);
+  EXPECT_EQ(track.find(FaultKind::kGainChange), nullptr) << "no change of gain";
+  const Fault* const fault = track.find(FaultKind::kNoiseBurst);
+  if (fault != nullptr) {
+    EXPECT_EQ(fault->channel, channel == 0 ? FaultChannel::kFrame : FaultChannel::kWheelsets);
+    EXPECT_NEAR(fault->time_s, 162.0, 15.0);
+  }
+  return fault != nullptr;
+}
+
+// Ten times the usual power of both.
+TEST(SpectralGuard, NamesABurstOfAWheelset) {
+  for (const std::size_t channel : {1U, 2U}) {
+    EXPECT_FALSE(bursts(channel, 0.06, {})) << channel;
+    EXPECT_TRUE(bursts(channel, 0.1, {})) << channel;
+  }
+}
+
+// 3.5 times the declared power, of the frame and of both wheelsets together.
+TEST(SpectralGuard, ABurstIsAboveWhatIsDeclared) {
+  GuardConfig frame;
+  frame.noise_mps2[0] = 0.1;
+  EXPECT_FALSE(bursts(0, 0.15, frame));
+  EXPECT_TRUE(bursts(0, 0.3, frame));
+  EXPECT_TRUE(bursts(1, 0.15, frame));
+  for (const std::size_t declared : {1U, 2U}) {
+    GuardConfig wheelset;
+    wheelset.noise_mps2[declared] = 0.1;
+    EXPECT_FALSE(bursts(1, 0.15, wheelset)) << declared;
+    EXPECT_TRUE(bursts(1, 0.35, wheelset)) << declared;
+    EXPECT_TRUE(bursts(0, 0.15, wheelset)) << declared;
   }
 }
 

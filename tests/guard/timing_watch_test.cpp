@@ -233,6 +233,20 @@ TEST(TimingWatch, AWheelsetIsOutOfStepByTheFramesLagsToATenth) {
   EXPECT_EQ(channel_of_step({0.5, 0.0, 0.88}), FaultChannel::kWheelsets);
 }
 
+// Where a wheelset is far out of step the lag behind the mean may stay: its own jump tells.
+TEST(TimingWatch, AWheelsetThatJumpedIsOutOfStepEvenWhereTheMeanStays) {
+  for (const bool jumped : {false, true}) {
+    Blocks blocks;
+    blocks.show(12, {});
+    if (jumped) blocks.watch().set_jump(12 * kBlock);
+    blocks.show(8, {.delay_s = kUsualS + 0.01, .lag_s = {0.0, 0.0, -0.01}});
+    EXPECT_EQ(blocks.speed_changes(), jumped ? 0U : 1U);
+    ASSERT_EQ(blocks.faults().size(), jumped ? 1U : 0U);
+    if (jumped)
+      expect_only(blocks, {FaultKind::kRepeatedSamples, FaultChannel::kWheelset2, 3.0}, 0);
+  }
+}
+
 // Where the lags do not tell, a change within four segments is a step, a slower one a ride.
 TEST(TimingWatch, WithoutLagsASuddenChangeIsAFault) {
   for (const auto& [segments, named] : {std::pair{1.0, true}, std::pair{9.0, false}}) {

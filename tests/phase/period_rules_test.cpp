@@ -196,11 +196,30 @@ TEST(PeriodMeter, KnowsEnoughFromThreeTimesItsLags) {
 TEST(PeriodMeter, AfterARestartNeighboursAreNew) {
   using Small = PeriodMeter<64>;
   Small meter{0.01, 1};
-  for (int part = 0; part < 40; ++part) {
+  for (int part = 0; part < 300; ++part) {
     for (int i = 0; i < 63; ++i) meter.update(std::sin(0.3 * i));  // one too few for a pair
     meter.restart();
   }
   EXPECT_EQ(meter.period().state, PeriodState::kNotEnough);
+}
+
+// Of a lag that a gap cuts off nothing is left in the next one.
+TEST(PeriodMeter, SumsNoLagAcrossAGap) {
+  using Small = PeriodMeter<64>;
+  Small cut{0.01, 3};
+  Small whole{0.01, 3};
+  for (int i = 0; i < 6000; ++i) {
+    if (i % 600 == 0) {
+      cut.update(1e3);
+      cut.restart();
+      whole.restart();
+    }
+    cut.update(std::sin(0.3 * i));
+    whole.update(std::sin(0.3 * i));
+  }
+  ASSERT_EQ(whole.period().state, PeriodState::kFound);
+  EXPECT_EQ(cut.period().period_s, whole.period().period_s);
+  EXPECT_EQ(cut.period().height, whole.period().height);
 }
 
 TEST(PhaseViewRules, HasItsLimits) {
@@ -215,6 +234,7 @@ TEST(PhaseViewRules, HasItsLimits) {
   EXPECT_FALSE(ok({.learn_s = std::nan("")}));
   EXPECT_TRUE(ok({.known_period_s = 8.01 / 300.0})) << "eight samples";
   EXPECT_FALSE(ok({.known_period_s = 7.99 / 300.0}));
+  EXPECT_FALSE(ok({.sample_rate_hz = 256.0, .known_period_s = 8.0 / 256.0})) << "more than eight";
   EXPECT_FALSE(ok({.known_period_s = -1.0}));
   EXPECT_FALSE(ok({.known_period_s = infinite}));
   EXPECT_FALSE(ok({.velocity_low_mps = 1.0, .velocity_high_mps = -1.0}));
@@ -315,6 +335,45 @@ TEST(PhaseViewRules, SectionsOfAKnownPeriodBeginAtOnceAndHoldTheNewest) {
   EXPECT_EQ(late->section_count[1], kSectionPoints);
   EXPECT_NEAR(late->section[1][kSectionPoints - 1].accel_mps2, 60'000.0, 125.0);
   EXPECT_NEAR(late->section[1][0].accel_mps2, 60'000.0 - 120.0 * 199.0, 250.0);
+}
+
+// Whatever the unit of time is.
+TEST(PhaseViewRules, SectionsDependOnSamplesAPeriodAlone) {
+  for (const double rate_hz : {300.0, 0.25}) {
+    PhaseViewConfig config = kRanges;
+    config.sample_rate_hz = rate_hz;
+    config.known_period_s = 120.0 / rate_hz;
+    const auto view = std::make_unique<PhaseView>(config);
+    for (std::int64_t tick = 0; tick < 1201; ++tick) view->update(on_circle(tick, 0.4));
+    for (std::size_t phase = 0; phase < kSectionPhases; ++phase)
+      EXPECT_NEAR(static_cast<double>(snapshot_of(*view)->section_count[phase]), 10.0, 1.0);
+  }
+}
+
+TEST(PhaseViewRules, WhatIsNoNumberIsInNoPictureAndJoinsNothing) {
+  PhaseViewConfig config = kRanges;
+  config.known_period_s = 0.4;
+  const auto view = std::make_unique<PhaseView>(config);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (std::int64_t tick = 0; tick < 3000; ++tick) {
+    Motion motion = on_circle(tick, 0.4);
+    if (tick % 30 == 0 && tick % 120 != 0) {  // at three flashes of four
+      double& value = tick % 120 == 30   ? motion.deflection_m
+                      : tick % 120 == 60 ? motion.velocity_mps
+                                         : motion.relative_mps2;
+      value = none;
+    }
+    view->update(motion);
+  }
+  const auto out = snapshot_of(*view);
+  EXPECT_EQ(out->not_finite, 75U);
+  for (const PhasePicture* picture :
+       {&out->velocity_over_deflection, &out->accel_over_deflection, &out->accel_over_velocity}) {
+    EXPECT_EQ(picture->samples, 2925U);
+    EXPECT_EQ(picture->outside_share, 0.0);
+  }
+  EXPECT_GT(out->section_count[0], 20U);
+  for (const std::size_t phase : {1U, 2U, 3U}) EXPECT_EQ(out->section_count[phase], 0U);
 }
 
 TEST(PhaseViewRules, AGapJoinsNothing) {
