@@ -19,7 +19,12 @@ struct Parsed {
 
 Parsed parse(const std::string& line) {
   Parsed result;
-  result.frame.data.fill(0xEE);  // what another frame left behind
+  CanFrame& frame = result.frame;  // what another frame left behind
+  frame.data.fill(0xEE);
+  frame.id = 0x7FF;
+  frame.length = 7;
+  frame.fd_flags = 3;
+  frame.extended = frame.remote = frame.error = frame.fd = true;
   CandumpLine parser;
   const CandumpFault fault = parser.parse(line, result.frame);
   if (fault.expected != nullptr) {
@@ -38,6 +43,7 @@ TEST(CandumpLine, ReadsAStandardFrame) {
   EXPECT_EQ(line.interface, "can0");
   EXPECT_EQ(line.frame.id, 0x0D0U);
   EXPECT_FALSE(line.frame.extended || line.frame.remote || line.frame.error || line.frame.fd);
+  EXPECT_EQ(line.frame.fd_flags, 0);
   EXPECT_EQ(line.frame.length, 8);
   EXPECT_EQ(line.frame.data[0], 0xA8);
   EXPECT_EQ(line.frame.data[7], 0x01);
@@ -101,11 +107,15 @@ TEST(CandumpLine, ReadsExtendedErrorAndRemoteFrames) {
   EXPECT_EQ(low.frame.id, 0x123U);
   const Parsed error = parse("(1.000000) can0 20000080#0000000000000000");
   EXPECT_TRUE(error.frame.error);
+  EXPECT_FALSE(error.frame.extended || error.frame.remote || error.frame.fd);
   EXPECT_EQ(error.frame.id, 0x80U);
   const Parsed remote = parse("(1.000000) can0 123#R");
   EXPECT_TRUE(remote.frame.remote);
   EXPECT_EQ(remote.frame.length, 0);
+  EXPECT_EQ(remote.frame.data[0], 0);
   EXPECT_EQ(parse("(1.000000) can0 123#R8").frame.length, 8);
+  EXPECT_EQ(parse("(1.000000) can0 123#r0").expected, "");
+  EXPECT_NE(parse("(1.000000) can0 123#R9").expected, "") << "eight bytes at most";
 }
 
 TEST(CandumpLine, ReadsCanFd) {

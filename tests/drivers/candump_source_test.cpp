@@ -116,6 +116,19 @@ TEST(CandumpSource, SkipsOneLineWhoseTimeLeapsAhead) {
   EXPECT_THAT(read_all({}, text).error, HasSubstr("FILE:1: expected a time that is not"));
 }
 
+// It is wrong where more than half of what follows is a second or more before it.
+TEST(CandumpSource, MostOfTheNextLinesTellWhetherALineLeapsAhead) {
+  const auto first_ns = [](const std::string& text) {
+    return read_all({.skip_bad_lines = true}, text).frames.front().time_ns;
+  };
+  EXPECT_EQ(first_ns(line(8000.0) + line(10.0)), 10'000'000'000) << "one of one";
+  EXPECT_EQ(first_ns(line(8000.0) + line(10.0) + line(8000.5)), 8000'000'000'000) << "half";
+  EXPECT_EQ(first_ns(line(8000.0) + line(7999.0)), 7999'000'000'000) << "a second";
+  EXPECT_EQ(first_ns(line(8000.0) + line(7999.001)), 8000'000'000'000) << "less";
+  EXPECT_EQ(first_ns(line(8000.0) + "# 1\n# 2\n" + line(10.0)), 10'000'000'000);
+  EXPECT_EQ(read_all({.skip_bad_lines = true}, line(8000.0)).frames.size(), 1U) << "none follows";
+}
+
 TEST(CandumpSource, BearsAPause) {
   EXPECT_EQ(read_all({}, line(10.0) + line(5000.0) + line(5000.1)).frames.size(), 3U);
 }

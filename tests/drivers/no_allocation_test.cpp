@@ -54,7 +54,7 @@ std::size_t read_without_allocation(hal::FrameSource& source) {
 }
 
 TEST(NoAllocation, ReadingACandumpLog) {
-  std::string text = "# comment\n";
+  std::string text = "# a comment that is too long for a string's own room\n";
   for (int i = 0; i < 20000; ++i) {
     text += fmt::format("(1600000000.{:06}) can{} 123#1122334455667788\n", i * 10 - i % 7, i % 5);
     if (i % 100 == 50) text += "(not a line\n";

@@ -50,17 +50,19 @@ TEST(FindPeriod, IsThePlaceOfThePeaksWithTheirHeight) {
   }
 }
 
-// Parabolas around 30.3, 60.6, ...: the refined places are exact.
+// Parabolas around 30.3, 60.6, ...: the refined places are exact, also midway between two lags.
 TEST(FindPeriod, RefinesPeaksByAParabola) {
-  const auto r = correlation_of([](double l) {
-    const double off = std::remainder(l, 30.3);
-    return 0.6 - 0.02 * off * off;
-  });
-  const Period out = found_in(r);
-  ASSERT_EQ(out.state, PeriodState::kFound);
-  EXPECT_NEAR(out.period_s, 30.3 * kLagS, 1e-9);
-  EXPECT_NEAR(out.height, 0.6, 1e-9);
-  EXPECT_NEAR(out.period_std_s, 0.0, 1e-7);
+  for (const double period : {30.3, 30.5}) {
+    const auto r = correlation_of([period](double l) {
+      const double off = std::remainder(l, period);
+      return 0.6 - 0.02 * off * off;
+    });
+    const Period out = found_in(r);
+    ASSERT_EQ(out.state, PeriodState::kFound);
+    EXPECT_NEAR(out.period_s, period * kLagS, 1e-9);
+    EXPECT_NEAR(out.height, 0.6, 1e-9);
+    EXPECT_NEAR(out.period_std_s, 0.0, 1e-7);
+  }
 }
 
 // Peaks off their places by +-d in turns: the slope's deviation, of which half are independent.
@@ -144,9 +146,21 @@ TEST(FindPeriod, LooksBetweenFourLagsAndAQuarterOfTheLongest) {
 }
 
 TEST(FindPeriod, FindsNoneWithoutAPeak) {
-  EXPECT_EQ(found_in(correlation_of([](double l) { return std::exp(-l / 50.0); })).state,
-            PeriodState::kNone);
-  EXPECT_EQ(found_in(correlation_of([](double) { return -0.1; })).state, PeriodState::kNone);
+  for (const auto& r : {correlation_of([](double l) { return std::exp(-l / 50.0); }),
+                        correlation_of([](double) { return -0.1; })}) {
+    const Period out = found_in(r);
+    EXPECT_EQ(out.state, PeriodState::kNone);
+    for (const double figure : {out.period_s, out.height, out.persistence, out.confidence})
+      EXPECT_EQ(figure, 0.0);
+  }
+}
+
+TEST(FindPeriod, PersistsWhollyAtMost) {
+  const auto r = correlation_of([](double l) { return 0.5 * (1.0 + l / 800.0) * turn(l, 25.0); });
+  const Period out = found_in(r);
+  EXPECT_EQ(out.state, PeriodState::kFound);
+  EXPECT_EQ(out.persistence, 1.0);
+  EXPECT_LE(out.confidence, 1.0);
 }
 
 TEST(ConfirmPeriod, LooksThreePercentAround) {
@@ -178,6 +192,12 @@ TEST(ConfirmPeriod, NeedsFourOfItAndFourLags) {
   EXPECT_NE(state(99.49), PeriodState::kNotEnough);
   EXPECT_EQ(state(99.51), PeriodState::kNotEnough);
   EXPECT_EQ(state(std::nan("")), PeriodState::kNotEnough);
+  EXPECT_NE(confirm_period(r.data(), kRuleLags, kManyPairs, 0.5, 49.75).state,
+            PeriodState::kNotEnough)
+      << "four of 99.5 lags are those that there are";
+  EXPECT_NE(confirm_period(r.data(), kRuleLags, kManyPairs, 0.5, 2.0).state,
+            PeriodState::kNotEnough)
+      << "four lags";
 }
 
 TEST(PeriodMeter, KnowsEnoughFromThreeTimesItsLags) {
@@ -203,23 +223,18 @@ TEST(PeriodMeter, AfterARestartNeighboursAreNew) {
   EXPECT_EQ(meter.period().state, PeriodState::kNotEnough);
 }
 
-// Of a lag that a gap cuts off nothing is left in the next one.
+// Of a lag that a gap cuts off nothing is left in the next one: what is constant stays so.
 TEST(PeriodMeter, SumsNoLagAcrossAGap) {
   using Small = PeriodMeter<64>;
-  Small cut{0.01, 3};
-  Small whole{0.01, 3};
-  for (int i = 0; i < 6000; ++i) {
-    if (i % 600 == 0) {
-      cut.update(1e3);
-      cut.restart();
-      whole.restart();
+  for (const double constant : {0.0, 1.0}) {
+    Small meter{0.01, 3};
+    for (int part = 0; part < 20; ++part) {
+      for (int i = 0; i < 600; ++i) meter.update(constant);
+      meter.update(constant + part);
+      meter.restart();
     }
-    cut.update(std::sin(0.3 * i));
-    whole.update(std::sin(0.3 * i));
+    EXPECT_EQ(meter.period().state, PeriodState::kNoMotion) << constant;
   }
-  ASSERT_EQ(whole.period().state, PeriodState::kFound);
-  EXPECT_EQ(cut.period().period_s, whole.period().period_s);
-  EXPECT_EQ(cut.period().height, whole.period().height);
 }
 
 TEST(PhaseViewRules, HasItsLimits) {
@@ -280,6 +295,39 @@ TEST(PhaseViewRules, APictureIsClippedFromOnePercentOn) {
   }
 }
 
+// The middle of each cell, once.
+TEST(PhaseViewRules, APictureShowsEveryCellAlike) {
+  const auto view = std::make_unique<PhaseView>(kRanges);
+  const auto middle = [](std::int64_t cell) {
+    return (static_cast<double>(cell) + 0.5) / kPictureCells - 0.5;
+  };
+  constexpr auto kCells = static_cast<std::int64_t>(kPictureCells);
+  for (std::int64_t tick = 0; tick < kCells * kCells; ++tick)
+    view->update({.tick = tick,
+                  .deflection_m = 4e-3 * middle(tick / kCells),
+                  .velocity_mps = 0.04 * middle(tick % kCells),
+                  .relative_mps2 = 4.0 * middle(tick % kCells)});
+  const auto out = snapshot_of(*view);
+  for (std::size_t i = 0; i < kPictureCells; ++i) {
+    for (std::size_t j = 0; j < kPictureCells; ++j) {
+      ASSERT_NEAR(out->velocity_over_deflection.density[i][j] * 4e-3 * 0.04, 1.0, 1e-3);
+      ASSERT_NEAR(out->accel_over_deflection.density[i][j] * 4e-3 * 4.0, 1.0, 1e-3);
+      ASSERT_EQ(out->accel_over_velocity.density[i][j] > 0.0F, i == j);
+    }
+  }
+}
+
+// At 50 samples a second a tenth of a second is five of them.
+TEST(PhaseViewRules, FindsATenthOfASecondAtFiftySamplesASecond) {
+  PhaseViewConfig config = kRanges;
+  config.sample_rate_hz = 50.0;
+  const auto view = std::make_unique<PhaseView>(config);
+  for (std::int64_t tick = 0; tick < 10'000; ++tick) view->update(on_circle(tick, 6.0 / 300.0));
+  const Period period = snapshot_of(*view)->period;
+  EXPECT_EQ(period.state, PeriodState::kFound);
+  EXPECT_NEAR(period.period_s, 6.0 / 50.0, 1e-4);
+}
+
 TEST(PhaseViewRules, LooksForAPeriodEveryTenSeconds) {
   const auto view = std::make_unique<PhaseView>(kRanges);
   const auto points = [&] { return snapshot_of(*view)->section_count[0]; };
@@ -288,30 +336,53 @@ TEST(PhaseViewRules, LooksForAPeriodEveryTenSeconds) {
     for (int i = 0; i < static_cast<int>(seconds * 300.0); ++i)
       view->update(on_circle(tick++, period_s));
   };
-  run(119.9, 0.371);  // of a tone 9 * 512 products of 20 ms are sure
-  EXPECT_NEAR(static_cast<double>(points()), 9.9 / 0.371, 2.0);
+  run(119.9, 0.373);  // of a tone 9 * 512 products of 20 ms are sure
+  EXPECT_NEAR(static_cast<double>(points()), 9.9 / 0.373, 2.0);
   const std::size_t before = points();
-  run(10.0, 0.371);
+  const double first_m = on_circle(110 * 300 - 1, 0.373).deflection_m;
+  EXPECT_NEAR(snapshot_of(*view)->section[0][0].deflection_m, first_m, 1e-4) << "from there on";
+  run(10.0, 0.373);
   EXPECT_NEAR(static_cast<double>(points() - before), 27.0, 2.0) << "four points a period";
 }
 
-TEST(PhaseViewRules, EndsTheSectionsWhereThePeriodIsGone) {
+TEST(PhaseViewRules, EndsTheSectionsWhereThePeriodIsGoneAndBeginsAnewWhereItIsBack) {
   const auto view = std::make_unique<PhaseView>(kRanges);
   std::int64_t tick = 0;
   for (; tick < 45'000; ++tick) view->update(on_circle(tick, 0.371));
   EXPECT_GT(snapshot_of(*view)->section_count[2], 50U);
   std::uint64_t state = 1;
-  for (; tick < 200'000; ++tick) {
+  for (; tick < 90'000; ++tick) {
     state = state * 6364136223846793005U + 1442695040888963407U;
     const double noise = static_cast<double>(state >> 40U) / 16777216.0 - 0.5;
     view->update({.tick = tick,
                   .deflection_m = 1e-3 * noise,
-                  .velocity_mps = 0.1 * noise,
+                  .velocity_mps = 0.2 * noise,
                   .relative_mps2 = noise});
   }
   EXPECT_EQ(snapshot_of(*view)->period.state, PeriodState::kNone);
-  for (; tick < 200'100; ++tick) view->update(on_circle(tick, 0.371));
+  for (; tick < 90'100; ++tick) view->update(on_circle(tick, 0.371));
   for (const std::size_t count : snapshot_of(*view)->section_count) EXPECT_EQ(count, 0U);
+  for (; tick < 400'000; ++tick) {
+    if (tick % 3000 == 0 && snapshot_of(*view)->section_count[1] >= 100) break;
+    view->update(on_circle(tick, 0.371));
+  }
+  const auto back = snapshot_of(*view);
+  ASSERT_EQ(back->period.state, PeriodState::kFound);
+  ASSERT_GE(back->section_count[1], 100U);
+  for (std::size_t i = 0; i < back->section_count[1]; ++i) {
+    const PhasePoint& p = back->section[1][i];
+    EXPECT_NEAR(std::hypot(p.deflection_m / 1e-3, p.velocity_mps / 1e-2), 1.0, 0.05) << i;
+  }
+}
+
+TEST(PhaseViewRules, APictureOfNoSampleIsEmptyWhateverWasThere) {
+  const auto full = std::make_unique<PhaseView>(kRanges);
+  for (std::int64_t tick = 0; tick < 3000; ++tick) full->update(on_circle(tick, 0.4));
+  const auto out = snapshot_of(*full);
+  EXPECT_EQ(out->accel_over_deflection.state, PictureState::kGood);
+  std::make_unique<PhaseView>(kRanges)->snapshot(*out);
+  EXPECT_EQ(out->accel_over_deflection.state, PictureState::kEmpty);
+  EXPECT_EQ(out->accel_over_deflection.samples, 0U);
 }
 
 TEST(PhaseViewRules, SectionsOfAKnownPeriodBeginAtOnceAndHoldTheNewest) {
