@@ -257,12 +257,14 @@ TEST(PhaseViewRules, HasItsLimits) {
 }
 
 /// A circle in all planes.
-Motion on_circle(std::int64_t tick, double period_s) {
-  const double angle = 2.0 * std::numbers::pi * static_cast<double>(tick) / 300.0 / period_s;
+Motion at_angle(std::int64_t tick, double angle) {
   return {.tick = tick,
           .deflection_m = 1e-3 * std::sin(angle),
           .velocity_mps = 1e-2 * std::cos(angle),
           .relative_mps2 = std::cos(angle + 0.7)};
+}
+Motion on_circle(std::int64_t tick, double period_s) {
+  return at_angle(tick, 2.0 * std::numbers::pi * static_cast<double>(tick) / 300.0 / period_s);
 }
 
 std::unique_ptr<PhaseSnapshot> snapshot_of(const PhaseView& view) {
@@ -343,6 +345,26 @@ TEST(PhaseViewRules, LooksForAPeriodEveryTenSeconds) {
   EXPECT_NEAR(snapshot_of(*view)->section[0][0].deflection_m, first_m, 1e-4) << "from there on";
   run(10.0, 0.373);
   EXPECT_NEAR(static_cast<double>(points() - before), 27.0, 2.0) << "four points a period";
+}
+
+// The period that is found goes from 0.371 s towards 0.3725 s: by half a minute flashes would have
+// drifted by more than a twentieth of it.
+TEST(PhaseViewRules, BeginsSectionsAnewWhereThePeriodHasMoved) {
+  const auto view = std::make_unique<PhaseView>(kRanges);
+  double angle = 0.0;
+  std::int64_t tick = 0;
+  const auto run = [&](double seconds, double period_s) {
+    for (int i = 0; i < static_cast<int>(seconds * 300.0); ++i, ++tick) {
+      angle += 2.0 * std::numbers::pi / 300.0 / period_s;
+      view->update(at_angle(tick, angle));
+    }
+  };
+  run(120.0, 0.371);
+  run(60.0, 0.3725);
+  const auto out = snapshot_of(*view);
+  EXPECT_EQ(out->period.state, PeriodState::kFound);
+  EXPECT_GT(out->section_count[0], 10U);
+  EXPECT_LT(out->section_count[0], 120U) << "of some 188 since they began";
 }
 
 TEST(PhaseViewRules, EndsTheSectionsWhereThePeriodIsGoneAndBeginsAnewWhereItIsBack) {
