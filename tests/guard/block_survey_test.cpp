@@ -119,6 +119,13 @@ TEST(BlockSurvey, CountsTheBinsThatAreCoherent) {
   EXPECT_NEAR(survey_of(sums).coherent_share, 98.0 / 147.0, 1e-12);
 }
 
+TEST(BlockSurvey, WithoutCoherenceThereIsNoDelay) {
+  SpectrumSums sums = sums_of({});
+  for (auto& cross : sums.aligned) cross = 0.0;
+  EXPECT_EQ(survey_of(sums).delay_s, 0.0);
+  EXPECT_EQ(survey_of(sums).coherent_share, 0.0);
+}
+
 TEST(BlockSurvey, ABinWeighsFiftyAtMost) {
   SpectrumSums sums = sums_of({});
   sums.aligned[50] = std::sqrt(0.9);

@@ -273,7 +273,7 @@ TEST(GuardCodes, CopiesThatHardlyMoveTellNothing) {
   for (const auto& [moves, copied] : {std::pair{280, false}, std::pair{320, true}}) {
     Codes codes;
     codes.run(3001, [&, m = moves](Sample& sample) {
-      const auto code = std::min<std::int64_t>(sample.tick, m) % 7;
+      const auto code = std::min<std::int64_t>(sample.tick, m) % 7 + 3;
       sample.accel_mps2[1] = sample.accel_mps2[2] = Codes::code(code);
       sample.accel_mps2[0] = 0.0;
     });

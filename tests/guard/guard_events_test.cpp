@@ -55,6 +55,13 @@ TEST(GuardCodes, TakesAJumpOfAllChannelsAlikeForTheTrack) {
   EXPECT_EQ(faults_after({2.0, 2.0, -2.0}), 3U);
 }
 
+TEST(GuardCodes, TakesTheEndOfACurveForTheTrackToo) {
+  Codes codes;
+  for (const double cant_mps2 : {0.0, 0.6, 0.0, -0.6})
+    codes.run(9000, raised({cant_mps2, cant_mps2, cant_mps2}));
+  EXPECT_TRUE(codes.faults().empty());
+}
+
 TEST(GuardCodes, TellsAJumpAtTheEndOfTheRecordToo) {
   Codes codes;
   codes.run(9000);

@@ -119,6 +119,19 @@ TEST(SpectralGuard, NamesTheSensorThatIsUpsideDown) {
   }
 }
 
+// Where wheelsets hardly match, none is upside down: 0.35 of the whitened correlation are needed.
+TEST(SpectralGuard, NamesAWheelsetThatIsUpsideDownWhereTheyMatch) {
+  for (const auto& [noise, named] : {std::pair{3.0, true}, std::pair{4.5, false}}) {
+    Track track{GuardConfig{}};
+    track.noise = noise;
+    track.change = [](std::int64_t, Track::Values& a) { a[1] = -a[1]; };
+    track.run(120.0);
+    EXPECT_NEAR(track.guard().figures().match, named ? -0.42 : -0.27, 0.05);
+    const auto* const fault = track.log().find(FaultKind::kWrongPolarity, FaultChannel::kWheelset1);
+    EXPECT_EQ(fault != nullptr, named) << noise;
+  }
+}
+
 TEST(SpectralGuard, NamesAFrameThatShakesMoreThanAWheelset) {
   for (const auto& [factor, named] : {std::pair{0.9, false}, std::pair{1.1, true}}) {
     Track track;
@@ -399,6 +412,15 @@ TEST(SpectralGuard, NamesABurstOfAWheelset) {
     EXPECT_FALSE(bursts(channel, 0.06, {})) << channel;
     EXPECT_TRUE(bursts(channel, 0.1, {})) << channel;
   }
+}
+
+TEST(SpectralGuard, KnowsWhatIsABurstFromFiveBlocksOn) {
+  Track track{GuardConfig{}};
+  track.change = noisy(0, 0.3, 24.0, 36.0);
+  track.run(55.0);  // four of ten seconds, and what the first needs
+  EXPECT_TRUE(track.faults().empty());
+  track.run(3.0);
+  EXPECT_NE(track.find(FaultKind::kNoiseBurst), nullptr);
 }
 
 // 3.5 times the declared power, of the frame and of both wheelsets together.

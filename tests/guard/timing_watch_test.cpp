@@ -322,6 +322,8 @@ TEST(TimingWatch, TakesNothingOverFromBeforeARestart) {
   blocks.show(12, {});
   blocks.watch().restart();
   blocks.show(12, wheelset2_late(0.002));
+  blocks.watch().restart();
+  blocks.show(12, {.delay_s = 1.5 * kUsualS});
   EXPECT_TRUE(blocks.faults().empty());
   EXPECT_EQ(blocks.speed_changes(), 0U);
 }
