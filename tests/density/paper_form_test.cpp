@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -79,6 +80,128 @@ TEST(PaperForm, OfAnExactDensityIsExact) {
   EXPECT_NEAR(
       form.integrals.ac / (0.5 * kInputLevel * gain * tail / (4.0 * std::pow(kLengthMps, 3))), 1.0,
       0.02);
+}
+
+template <class Histogram, class Density>
+void fill_with(Histogram& histogram, double samples, const Density& density) {
+  for (std::size_t b = 0; b < Histogram::kBins; ++b) {
+    const double x = histogram.axis().centre(b);
+    for (long i = std::lround(samples * density(x)); i > 0; --i) histogram.update(x);
+  }
+}
+
+// p1^2 of a Gaussian about 0.4 mm, s = 0.7 mm, is one of s / sqrt(2).
+TEST(PaperForm, IntegratesOverADeflectionThatIsNotSymmetric) {
+  constexpr double kMeanMm = 0.4;
+  constexpr double kVarianceMm2 = 0.49 / 2.0;
+  DeflectionHistogram deflections{{.range = {.low = -4.0e-3, .high = 4.0e-3}}};
+  fill_with(deflections, 2.0e5,
+            [](double y) { return std::exp(-0.5 * std::pow((y - 1e-3 * kMeanMm) / 0.7e-3, 2)); });
+  const auto over_y = deflection_integrals(deflections, {1.0, 0.5, 0.3});
+  const auto moment = [&](int order) {  // of y in mm
+    const double m = kMeanMm;
+    const double v = kVarianceMm2;
+    return std::array{
+        1.0, m, m * m + v, m * m * m + 3.0 * m * v,
+        std::pow(m, 4) + 6.0 * m * m * v + 3.0 * v * v}[static_cast<std::size_t>(order)];
+  };
+  EXPECT_NEAR(over_y.p1_p1 * 2.0 * std::sqrt(std::numbers::pi) * 0.7e-3, 1.0, 1e-3);
+  EXPECT_NEAR(1e3 * over_y.y_p1_p1 / over_y.p1_p1, kMeanMm, 1e-4);
+  EXPECT_NEAR(over_y.psi2_p1_p1 / over_y.p1_p1, 1.0 + 0.5 * moment(1) + 0.3 * moment(2), 1e-3);
+  EXPECT_NEAR(over_y.psi4_p1_p1 / over_y.p1_p1,
+              1.0 + moment(1) + 0.85 * moment(2) + 0.3 * moment(3) + 0.09 * moment(4), 1e-3);
+  EXPECT_NEAR(over_y.p1_dp1 / over_y.p1_p1, 0.0, 1e-6) << "half of p1^2 from end to end";
+}
+
+// Two exponentials, of 5 mm/s in negative motion and 8 mm/s in positive: another force on either
+// side, and integrals of odd products that do not cancel.
+TEST(PaperForm, TellsTheSidesApart) {
+  constexpr double kInputLevel = 5.0e-3;
+  constexpr std::array kLengthMps{5.0e-3, 8.0e-3};
+  constexpr double kFromMps = 3.0e-3;
+  const auto velocities =
+      std::make_unique<VelocityHistogram>(HistogramConfig{.range = {.low = -0.064, .high = 0.064}});
+  fill_with(*velocities, 2.0e5, [&](double v) {
+    return std::exp(-std::abs(v) / (v < 0.0 ? kLengthMps[0] : kLengthMps[1]));
+  });
+  const DeflectionIntegrals over_y{
+      .p1_p1 = 2.0, .psi2_p1_p1 = 3.0, .psi4_p1_p1 = 5.0, .y_p1_p1 = 0.0};
+  const PaperFormConfig config{.beta = 280.0,
+                               .input_level = kInputLevel,
+                               .bandwidth_mps = 0.5e-3,
+                               .excluded_mps = kFromMps,
+                               .reach_mps = 0.03};
+  const PaperForm form = fit_paper_form(*velocities, over_y, config);
+  ASSERT_TRUE(form.ok);
+  const double half_level = 0.5 * kInputLevel * 1.5;  // psi^2 weighs by p1^2
+  EXPECT_NEAR(form.mean_mps2[0] / (-half_level / kLengthMps[0]), 1.0, 0.01);
+  EXPECT_NEAR(form.mean_mps2[1] / (half_level / kLengthMps[1]), 1.0, 0.01);
+  EXPECT_NEAR(form.offset(), 0.5 * half_level * (1.0 / kLengthMps[1] - 1.0 / kLengthMps[0]),
+              0.01 * half_level / kLengthMps[1]);
+  EXPECT_EQ(form.segments[0][4].from_mps, 4 * 0.003);
+  // int of p^2 beyond 3 mm/s of either side, smoothed.
+  std::array<double, 2> squares{};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const double l = kLengthMps[s];
+    const double smoothed = std::exp(std::pow(config.bandwidth_mps / l, 2));
+    squares[s] = smoothed * 0.5 * l * std::exp(-2.0 * kFromMps / l) /
+                 std::pow(kLengthMps[0] + kLengthMps[1], 2);
+  }
+  const auto sum = [&](int order) {  // with p' = p / l and -p / l
+    return squares[0] * std::pow(1.0 / kLengthMps[0], order) +
+           squares[1] * std::pow(-1.0 / kLengthMps[1], order);
+  };
+  const PaperIntegrals& x = form.integrals;
+  const double half = 0.5 * kInputLevel;
+  EXPECT_NEAR(x.cc / sum(0), 1.0, 0.02);
+  EXPECT_NEAR(x.bc / sum(1), 1.0, 0.05);
+  EXPECT_NEAR(x.bb / sum(2), 1.0, 0.02);
+  EXPECT_NEAR(x.ac / (1.5 * half * sum(2)), 1.0, 0.02);
+  EXPECT_NEAR(x.ab / (1.5 * half * sum(3)), 1.0, 0.05);
+  EXPECT_NEAR(x.aa / (2.5 * half * half * sum(4)), 1.0, 0.02);
+  EXPECT_EQ(x.bd, 0.0);
+  EXPECT_EQ(x.br, 0.0);
+}
+
+// A deflection whose mean is not zero: the spring's force adds to both sides.
+TEST(PaperForm, KnowsTheSpringAtTheMeanDeflection) {
+  const auto velocities =
+      std::make_unique<VelocityHistogram>(HistogramConfig{.range = {.low = -0.064, .high = 0.064}});
+  fill_with(*velocities, 2.0e5, [](double v) { return std::exp(-std::abs(v) / 6.0e-3); });
+  const PaperFormConfig config{.beta = 280.0,
+                               .input_level = 5.0e-3,
+                               .bandwidth_mps = 0.6e-3,
+                               .excluded_mps = 3.0e-3,
+                               .reach_mps = 0.03};
+  const PaperForm form = fit_paper_form(
+      *velocities, {.p1_p1 = 2.0, .psi2_p1_p1 = 2.0, .psi4_p1_p1 = 2.0, .y_p1_p1 = 0.4e-3}, config);
+  ASSERT_TRUE(form.ok);
+  EXPECT_NEAR(form.level_mps2(), 2.5e-3 / 6.0e-3, 2e-3);
+  EXPECT_NEAR(form.offset(), -280.0 * 0.2e-3, 2e-3);
+  EXPECT_NEAR(form.integrals.br / form.integrals.bb, 0.2e-3, 1e-9);
+  EXPECT_NEAR(form.integrals.cr, 0.2e-3 * form.integrals.bc, 1e-9);
+}
+
+// As published: ten segments a side, as far as 99 % of the mass, nothing left out.
+TEST(PaperForm, ReachesTo99PercentOfTheMass) {
+  const auto velocities =
+      std::make_unique<VelocityHistogram>(HistogramConfig{.range = {.low = -0.064, .high = 0.064}});
+  fill_with(*velocities, 2.0e5, [](double v) { return std::exp(-std::abs(v) / 6.0e-3); });
+  for (const double share : {0.5, 0.9, 0.99})
+    EXPECT_NEAR(speed_quantile(*velocities, share), -6.0e-3 * std::log(1.0 - share), 0.26e-3);
+  EXPECT_EQ(speed_quantile(*velocities, 1.1), 0.064);
+  const DeflectionIntegrals over_y{.p1_p1 = 1.0, .psi2_p1_p1 = 1.0, .psi4_p1_p1 = 1.0};
+  const PaperForm form = fit_paper_form(*velocities, over_y, {.input_level = 5.0e-3});
+  EXPECT_TRUE(form.ok);
+  EXPECT_EQ(form.used, 10U);
+  EXPECT_NEAR(form.segments[1][9].to_mps, speed_quantile(*velocities, 0.99), 1e-12);
+  EXPECT_EQ(fit_paper_form(*velocities, over_y, {.input_level = 1.0, .segments = 50}).used, 20U);
+  EXPECT_EQ(fit_paper_form(*velocities, over_y, {.input_level = 1.0, .segments = 0}).used, 1U);
+  EXPECT_FALSE(fit_paper_form(*velocities, {}, {.input_level = 1.0}).ok) << "no deflection";
+  EXPECT_FALSE(fit_paper_form(*velocities, over_y,
+                              {.input_level = 1.0, .excluded_mps = 0.03, .reach_mps = 0.03})
+                   .ok)
+      << "all is left out";
 }
 
 TEST(Modulation, FindsAPolynomial) {
