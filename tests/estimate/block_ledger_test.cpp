@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace dampline {
 namespace {
 
@@ -14,6 +16,21 @@ TEST(BlockLedger, NamesTheFirstFaultOfABlock) {
   ledger.mark(3, Fault::kStuck);
   ledger.mark(3, Fault::kGap);
   EXPECT_EQ(ledger.close(3, 100), BlockStatus::kExcludedStuck);
+}
+
+TEST(BlockLedger, EveryFaultExcludesByItsName) {
+  for (const auto& [fault, status] : {std::pair{Fault::kGap, BlockStatus::kExcludedGap},
+                                      std::pair{Fault::kSaturated, BlockStatus::kExcludedSaturated},
+                                      std::pair{Fault::kStuck, BlockStatus::kExcludedStuck},
+                                      std::pair{Fault::kNotFinite, BlockStatus::kExcludedNotFinite},
+                                      std::pair{Fault::kSpoilt, BlockStatus::kExcludedSpoilt}}) {
+    BlockLedger ledger;
+    for (std::int64_t block = 0; block < 16; ++block) ledger.add_row(block);
+    ledger.mark(7, fault);
+    for (std::int64_t block = 0; block < 16; ++block)
+      EXPECT_EQ(ledger.close(block, 1), block == 7 ? status : BlockStatus::kUsed)
+          << "sixteen blocks are open";
+  }
 }
 
 TEST(BlockLedger, TellsWholeBlocksFromPartial) {
@@ -32,6 +49,8 @@ TEST(BlockLedger, IsStillWhenNoRowPassedTheGate) {
   for (int i = 0; i < 60; ++i) ledger.add_still_row(2);
   for (int i = 0; i < 40; ++i) ledger.add_row(2);
   EXPECT_EQ(ledger.close(2, 100), BlockStatus::kUsed);
+  ledger.add_still_row(3);
+  EXPECT_EQ(ledger.close(3, 100), BlockStatus::kStill) << "not one row moved";
 }
 
 TEST(BlockLedger, ABlockInTheSamePlaceStartsClean) {
@@ -54,6 +73,16 @@ TEST(BlockReports, ComeOutInTheOrderOfTheirBlocks) {
     EXPECT_EQ(out.first_tick, 2 * i + 1);
   }
   EXPECT_FALSE(reports.pop(out));
+}
+
+TEST(BlockReports, SixteenMayWait) {
+  BlockReports reports;
+  for (std::int64_t i = 0; i < 16; ++i) reports.push({.first_tick = i});
+  BlockReport out;
+  for (std::int64_t i = 0; i < 16; ++i) {
+    ASSERT_TRUE(reports.pop(out));
+    EXPECT_EQ(out.first_tick, i);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
 
 #include "tests/estimate/random_rows.hpp"
 
@@ -105,6 +106,46 @@ TEST(Merge, CountsAdd) {
   EXPECT_EQ(a.velocity.positive, b.velocity.positive);
   EXPECT_EQ(a.velocity.negative, b.velocity.negative);
   EXPECT_EQ(a.newest_tick, b.newest_tick);
+}
+
+TEST(Merge, TheNoiseAndTheTickAreTheLarger) {
+  const auto rows = random_rows(20, 2, 2);
+  for (const bool first_larger : {true, false}) {
+    const auto first = statistics_of(rows, 0, 10);
+    const auto second = statistics_of(rows, 10, 20);
+    first->header.noise_mps2 = first_larger ? 0.03 : 0.01;
+    second->header.noise_mps2 = first_larger ? 0.01 : 0.03;
+    first->header.newest_tick = first_larger ? 500 : 100;
+    second->header.newest_tick = first_larger ? 100 : 500;
+    ASSERT_TRUE(merge(*first, *second).ok());
+    EXPECT_EQ(first->header.noise_mps2, 0.03);
+    EXPECT_EQ(first->header.newest_tick, 500);
+  }
+}
+
+// No entry is longer than the others, none but the last of either part shorter; their order stays.
+TEST(Merge, EntriesStayInOrderAndOfOneLength) {
+  const auto rows = random_rows(260, 1, 6);
+  for (const auto& [first, second] : {std::pair{200, 60}, std::pair{30, 230}, std::pair{28, 1}}) {
+    const auto merged = statistics_of(rows, 0, first);
+    ASSERT_TRUE(merge(*merged, *statistics_of(rows, first, first + second)).ok());
+    const std::uint32_t length = merged->header.blocks_per_entry;
+    EXPECT_GE(length * kEntries, static_cast<std::uint32_t>(first + second));
+    std::int64_t block = 0;
+    std::uint32_t shorter = 0;
+    for (std::uint32_t e = 0; e < merged->header.entry_count; ++e) {
+      const ScaleFactors& entry = merged->entries[e];
+      EXPECT_LE(entry.blocks, length);
+      shorter += entry.blocks < length ? 1 : 0;
+      const std::int64_t end = block + entry.blocks;
+      const auto truth =
+          batch_gram(rows, 2, [&](std::int64_t b) { return b >= block && b < end ? 1.0 : 0.0; });
+      EXPECT_LT(relative_difference(entry.factor[2].gram(), truth), 1e-12) << e;
+      block = end;
+    }
+    EXPECT_EQ(block, first + second);
+    EXPECT_LE(shorter, 2U);
+  }
 }
 
 TEST(Merge, ManySmallPartsMergeToTheWhole) {

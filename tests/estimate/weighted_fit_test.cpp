@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "dampline/estimate/law_profile.hpp"
@@ -123,6 +126,60 @@ TEST(WeightedFit, LeavesOutMaskedScalesAndScalesWithFewRows) {
   EXPECT_EQ(fit.weight[1], 0.0);
   EXPECT_EQ(fit.weight[3], 0.0);
   EXPECT_GT(fit.weight[0], 0.0);
+}
+
+TEST(WeightedFit, UsesAScaleFromFiveRowsAnUnknownOn) {
+  Synthetic data{8};
+  ScaleFactors factors;
+  data.add(factors, 100);
+  factors.rows[3] = 10.0;
+  factors.rows[4] = 9.99;
+  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAllScales);
+  EXPECT_GT(fit.weight[3], 0.0);
+  EXPECT_EQ(fit.weight[4], 0.0);
+}
+
+// sum n log s^2, sum w |r|^2 and sum w |t|^2, with r by the rows themselves.
+TEST(WeightedFit, StatesItsObjectiveAndWhatIsLeft) {
+  Synthetic data{9};
+  ScaleFactors factors;
+  std::array<std::vector<GalerkinRow>, kScales> rows;
+  for (std::size_t s = 0; s < kScales; ++s) {
+    for (int i = 0; i < 200; ++i) {
+      rows[s].push_back(data.row(kSigma[s] * data.normal()));
+      factors.factor[s].absorb(rows[s].back());
+      factors.rows[s] += 1.0;
+    }
+  }
+  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAllScales);
+  double objective = 0.0, residual = 0.0, total = 0.0;
+  Fit::Square information = Fit::Square::Zero();
+  for (std::size_t s = 0; s < kScales; ++s) {
+    double left = 0.0, target = 0.0;
+    Fit::Square gram = Fit::Square::Zero();
+    for (const GalerkinRow& row : rows[s]) {
+      const Fit::Vector x{row[4], row[kStiffnessColumn]};
+      left += std::pow(row[kTargetColumn] - fit.theta.dot(x), 2);
+      target += row[kTargetColumn] * row[kTargetColumn];
+      gram += x * x.transpose();
+    }
+    EXPECT_NEAR(fit.weight[s] * left, 200.0, 1e-6) << "a variance of one";
+    objective += 200.0 * std::log(left / 200.0);
+    residual += fit.weight[s] * left;
+    total += fit.weight[s] * target;
+    information += fit.weight[s] * gram;
+  }
+  EXPECT_NEAR(fit.objective, objective, 1e-6);
+  EXPECT_NEAR(fit.weighted_residual / residual, 1.0, 1e-5);
+  EXPECT_NEAR(fit.weighted_total / total, 1.0, 1e-5);
+  EXPECT_LT((fit.inverse * information - Fit::Square::Identity()).norm(), 1e-4);
+}
+
+TEST(ShortRecordFactor, FallsFromFourToOne) {
+  for (const auto& [count, factor] :
+       {std::pair{0.0, 4.0}, std::pair{3.5, 4.0}, std::pair{4.0, 4.0}, std::pair{5.0, 2.5},
+        std::pair{6.0, 2.0}, std::pair{28.0, 1.12}, std::pair{303.0, 1.01}})
+    EXPECT_NEAR(short_record_factor(count), factor, 1e-12) << count;
 }
 
 TEST(WeightedFit, SaysWhenThereIsNothingToFit) {
@@ -248,6 +305,49 @@ ScaleFactors rows_of_width(double width_mps, double noise, int count) {
     factors.rows[1] += 1.0;
   }
   return factors;
+}
+
+/// What a model's unknown is made of.
+double column_at(std::size_t width, int unknown, int column) {
+  return LawModel<true, true>::free_width(width)(column, unknown);
+}
+
+// Central differences over the widths, one-sided at the ends, where nothing bends.
+TEST(LawModel, ChangesByTheNeighboursOfItsWidth) {
+  using Model = LawModel<true, true>;
+  constexpr int kLast = static_cast<int>(kLawWidths) - 1;
+  for (int width = 0; width <= kLast; ++width) {
+    const auto i = static_cast<std::size_t>(width);
+    EXPECT_EQ(Model::can_bend(i), width > 0 && width < kLast) << width;
+    for (int c = 0; c <= kLast; ++c) {
+      const int above = std::min(width + 1, kLast);
+      const int below = std::max(width - 1, 0);
+      EXPECT_EQ(column_at(i, Model::kCoulomb, c), c == width ? 1.0 : 0.0);
+      EXPECT_EQ(column_at(i, Model::kWidthChange, c), c == above ? 1.0 : c == below ? -1.0 : 0.0);
+      if (Model::can_bend(i)) {
+        EXPECT_EQ(column_at(i, Model::kBend, c), c == width                 ? -2.0
+                                                 : c == above || c == below ? 1.0
+                                                                            : 0.0);
+      }
+    }
+    EXPECT_EQ(column_at(i, Model::kStiffness, kStiffnessColumn), 1.0);
+    EXPECT_EQ(column_at(i, Model::kViscous, kViscousColumn), 1.0);
+    EXPECT_EQ(column_at(i, Model::kUnknowns, kTargetColumn), 1.0);
+  }
+}
+
+// Of a tabulated width there is no change, also at either end of the table.
+TEST(LawProfile, OfATabulatedWidthIsThatWidth) {
+  for (const std::size_t i : {std::size_t{0}, std::size_t{4}, kLawWidths - 1}) {
+    const auto law =
+        LawProfile<true>::make(rows_of_width(kLawWidthMps[i], 0.003, 5000), kAllScales);
+    ASSERT_TRUE(law.fit.ok);
+    EXPECT_EQ(law.width_index, i);
+    EXPECT_NEAR(law.shift(), 0.0, 0.02);
+    EXPECT_NEAR(law.width_mps() / kLawWidthMps[i], 1.0, 0.02);
+    const std::size_t above = std::min(i + 1, kLawWidths - 1);
+    EXPECT_NEAR(law.span_mps(), kLawWidthMps[above] - kLawWidthMps[i > 0 ? i - 1 : 0], 1e-15);
+  }
 }
 
 TEST(LawProfile, FindsAWidthBetweenTheTabulatedOnes) {
