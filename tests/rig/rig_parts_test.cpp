@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "dampline/numeric/log_histogram.hpp"
 #include "dampline/rig/columns.hpp"
@@ -125,6 +127,171 @@ TEST(RigConfig, RefusesWhatCannotWork) {
   EXPECT_TRUE(refused([](rig::Config& c) { c.curve_nodes_mps[3] = c.curve_nodes_mps[2]; }));
   EXPECT_FALSE(
       check(rig::Terms{false, false, rig::Branches::kNone, rig::Branches::kSeparate, true}).ok());
+}
+
+TEST(RigConfig, HasItsLimits) {
+  const auto ok = [](auto change) {
+    rig::Config config;
+    change(config);
+    return check(config).ok();
+  };
+  // 0.477 times the rate over the corner, less one and three more.
+  for (const auto& [corner_hz, half] :
+       {std::pair{159.0, 5}, std::pair{20.0, 26}, std::pair{0.9353, 512}}) {
+    EXPECT_EQ(rig::half_support_samples(corner_hz, 1000.0), half);
+    EXPECT_TRUE(ok([c = corner_hz](rig::Config& config) { config.corner_hz = c; })) << corner_hz;
+    EXPECT_TRUE(ok([c = corner_hz](rig::Config& config) { config.prediction_corner_hz = c; }));
+  }
+  for (const double corner_hz : {200.0, 0.92}) {
+    EXPECT_FALSE(ok([=](rig::Config& config) { config.corner_hz = corner_hz; })) << corner_hz;
+    EXPECT_FALSE(ok([=](rig::Config& config) { config.prediction_corner_hz = corner_hz; }));
+  }
+  for (const auto& [half_width, fits] :
+       {std::pair{0, false}, std::pair{1, true}, std::pair{32, true}, std::pair{33, false}})
+    EXPECT_EQ(ok([h = half_width](rig::Config& c) { c.velocity_half_width = h; }), fits);
+  EXPECT_TRUE(ok([](rig::Config& c) { c.still_mps = 0.0; }));
+  EXPECT_FALSE(ok([](rig::Config& c) { c.still_mps = -1e-9; }));
+  EXPECT_TRUE(ok([](rig::Config& c) { c.block_samples = 1; }));
+  EXPECT_FALSE(ok([](rig::Config& c) { c.curve_nodes_mps[0] = 0.0; }));
+  EXPECT_FALSE(
+      ok([](rig::Config& c) { c.curve_nodes_mps[7] = std::numeric_limits<double>::infinity(); }));
+  for (const auto branches : {rig::Branches::kNone, rig::Branches::kCommon})
+    EXPECT_TRUE(check(rig::Terms{.coulomb = branches, .offset = true}).ok());
+}
+
+/// A sine of 10 mm with white noise, or rounded.
+struct SineMotion {
+  double hz{1.5};
+  double noise_m{0.0};
+  double step_m{0.0};
+  int samples{20000};
+  bool velocity_measured{false};
+  double rate_hz{1000.0};
+  [[nodiscard]] double speed_mps() const { return 0.01 * 6.283185307179586 * hz; }
+};
+rig::Survey survey_of(const SineMotion& motion) {
+  rig::Survey survey{motion.rate_hz, motion.velocity_measured};
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> noise;
+  for (std::int64_t tick = 0; tick < motion.samples; ++tick) {
+    rig::Sample sample;
+    sample.tick = tick;
+    const double angle = 6.283185307179586 * motion.hz * static_cast<double>(tick) / motion.rate_hz;
+    sample.deflection_m = 0.01 * std::sin(angle) + motion.noise_m * noise(random);
+    if (motion.step_m > 0.0)
+      sample.deflection_m = motion.step_m * std::round(sample.deflection_m / motion.step_m);
+    if (motion.velocity_measured)
+      sample.velocity_mps = motion.speed_mps() * std::cos(angle) + 1e-3 * noise(random);
+    survey.update(sample);
+  }
+  return survey;
+}
+
+// What the header says of each setting.
+TEST(RigSurvey, SuggestsNodesStandstillAndBlocksByTheMotion) {
+  const SineMotion motion{.noise_m = 1e-7};
+  const rig::Config out = survey_of(motion).suggest({}).value();
+  EXPECT_EQ(out.sample_rate_hz, 1000.0);
+  EXPECT_FALSE(out.velocity_measured);
+  const double top = std::sin(0.5 * 3.141592653589793 * 0.99) * motion.speed_mps();
+  for (std::size_t i = 0; i < kCurveSegments; ++i)
+    EXPECT_NEAR(out.curve_nodes_mps[i] / (top * static_cast<double>(i + 1) / 8.0), 1.0, 0.03);
+  const double rms = motion.speed_mps() / std::sqrt(2.0);
+  EXPECT_NEAR(out.still_mps / (0.01 * rms), 1.0, 0.1) << "a hundredth of it";
+  EXPECT_EQ(out.block_samples, 250) << "eighty of them";
+  EXPECT_NEAR(out.corner_hz, 20.0, 1e-9) << "a fiftieth of the rate";
+  EXPECT_FALSE(out.velocity_sharp);
+  EXPECT_EQ(survey_of({.noise_m = 1e-7, .samples = 2000}).suggest({}).value().block_samples, 106)
+      << "two test functions of 53";
+}
+
+TEST(RigSurvey, SuggestsACornerAboveTheMotion) {
+  EXPECT_NEAR(survey_of({.hz = 12.0}).suggest({}).value().corner_hz, 48.0, 1.5);
+  EXPECT_NEAR(survey_of({.hz = 60.0}).suggest({}).value().corner_hz, 1000.0 / 6.5, 1e-6)
+      << "two thirteenths of the rate at most";
+  EXPECT_EQ(survey_of({.hz = 12.0}).suggest({}, 30.0).value().corner_hz, 30.0);
+  EXPECT_EQ(survey_of({}).suggest({}, 400.0).error(), Errc::kInvalidConfig);
+}
+
+// Of a driven mass, lower by half octaves until noise makes less than a thousandth of <x, psi''>.
+TEST(RigSurvey, SuggestsALowerCornerWhereAMassIsDrivenInNoise) {
+  const rig::Terms driven{.inertia = true};
+  EXPECT_NEAR(survey_of({.noise_m = 1e-9}).suggest(driven).value().corner_hz, 20.0, 1e-9);
+  for (const double noise_m : {2e-5, 1e-4}) {
+    const SineMotion motion{.noise_m = noise_m};
+    const double corner_hz = survey_of(motion).suggest(driven).value().corner_hz;
+    const double octaves = 2.0 * std::log2(20.0 / corner_hz);
+    EXPECT_GE(octaves, 0.9);
+    const double w = 6.283185307179586 * motion.hz;
+    const auto share = [&](double hz) {
+      const rig::TestFunction psi{rig::half_support_samples(hz, 1000.0), 1e-3};
+      return std::pow(psi.second_noise_gain() * noise_m / (0.01 * w * w / std::sqrt(2.0)), 2);
+    };
+    if (corner_hz > 6.1) {
+      EXPECT_NEAR(octaves, std::round(octaves), 1e-6);
+      EXPECT_LT(share(corner_hz), 1.2e-3);
+    } else {
+      EXPECT_NEAR(corner_hz, 6.0, 0.3) << "four times the motion's frequency at least";
+    }
+    EXPECT_GT(share(corner_hz * std::sqrt(2.0)), 0.8e-3);
+  }
+}
+
+// A derivative as short as noise of a hundredth of the velocity permits.
+TEST(RigSurvey, SuggestsAWiderDerivativeInNoise) {
+  int last = 0;
+  for (const double noise_m : {1e-7, 3e-6, 1e-5, 3e-5}) {
+    const SineMotion motion{.noise_m = noise_m};
+    const rig::Config out = survey_of(motion).suggest({}).value();
+    const int widest = rig::half_support_samples(out) / 4;
+    const double limit = 0.01 * motion.speed_mps() / std::sqrt(2.0);
+    const auto error = [&](int half_width) {
+      return rig::DerivativeWindow{half_width, 1e-3}.noise_gain() * noise_m;
+    };
+    if (out.velocity_half_width < widest) {
+      EXPECT_LT(error(out.velocity_half_width), 1.05 * limit);
+    }
+    if (out.velocity_half_width > 1) {
+      EXPECT_GT(error(out.velocity_half_width - 1), 0.95 * limit);
+    }
+    EXPECT_LE(out.velocity_half_width, widest);
+    EXPECT_GE(out.velocity_half_width, last);
+    last = out.velocity_half_width;
+    const double sign = std::max(1.2533 * error(out.velocity_half_width), 1e-2 * limit);
+    EXPECT_NEAR(out.sign_width_mps / sign, 1.0, 0.1);
+    EXPECT_NEAR(out.still_mps / std::max(3.0 * error(out.velocity_half_width), limit), 1.0, 0.1);
+  }
+  EXPECT_EQ(last, 6) << "a quarter of 26";
+}
+
+TEST(RigSurvey, TakesTheVelocityThatIsMeasured) {
+  const SineMotion motion{.velocity_measured = true};
+  const rig::Config out = survey_of(motion).suggest({}).value();
+  EXPECT_TRUE(out.velocity_measured);
+  EXPECT_FALSE(out.velocity_sharp);
+  EXPECT_NEAR(out.sign_width_mps, 1.2533e-3, 0.1e-3);
+  EXPECT_NEAR(out.still_mps, 3e-3, 0.3e-3);
+}
+
+// Rounding to steps of d makes noise of d / sqrt(12), which differences of slow motion may miss.
+TEST(RigSurvey, KnowsTheResolution) {
+  EXPECT_NEAR(survey_of({.hz = 0.05, .step_m = 1e-4}).deflection_noise_m(), 1e-4 / std::sqrt(12.0),
+              0.2e-4);
+}
+
+TEST(RigSurvey, LeavesOutWhatIsNoNumberAndJoinsNoGap) {
+  rig::Survey survey{1000.0, false};
+  for (std::int64_t i = 0; i < 30'000; ++i) {
+    rig::Sample sample;
+    sample.tick = i + 500 * (i / 100);
+    // After each gap on another level, which is no velocity.
+    sample.deflection_m = 0.01 * std::sin(0.00942477796 * static_cast<double>(sample.tick));
+    if (i % 1000 == 500) sample.force_n = std::nan("");
+    survey.update(sample);
+  }
+  EXPECT_EQ(survey.samples(), 29'970U);
+  EXPECT_NEAR(survey.motion_frequency_hz(), 1.5, 0.05);
+  EXPECT_LT(survey.deflection_noise_m(), 1e-7);
 }
 
 TEST(RigSurvey, MeasuresNoiseAndFrequencyOfAHarmonicMotion) {
