@@ -49,6 +49,9 @@ TEST(BlockLedger, IsStillWhenNoRowPassedTheGate) {
   for (int i = 0; i < 60; ++i) ledger.add_still_row(2);
   for (int i = 0; i < 40; ++i) ledger.add_row(2);
   EXPECT_EQ(ledger.close(2, 100), BlockStatus::kUsed);
+  for (int i = 0; i < 40; ++i) ledger.add_still_row(4);
+  for (int i = 0; i < 60; ++i) ledger.add_row(4);
+  EXPECT_EQ(ledger.close(4, 100), BlockStatus::kUsed);
   ledger.add_still_row(3);
   EXPECT_EQ(ledger.close(3, 100), BlockStatus::kStill) << "not one row moved";
 }

@@ -286,6 +286,45 @@ TEST(HeldOutNmse, IsTheNoisesShareAndNotLessThanTheFittedError) {
   EXPECT_NEAR(held_out, kScales / (kScales + weighted_signal), 0.1 * held_out);
 }
 
+// Entries of grouped rows, each weighed before, say what entries of single scales say.
+TEST(GroupedFactors, TellWhatTheirScalesTell) {
+  Synthetic data{10};
+  const auto map = force_and_stiffness();
+  const MappedColumns<kUnknowns> columns{map};
+  ScaleFactors total;
+  std::vector<ScaleFactors> entries(20);
+  for (ScaleFactors& entry : entries) {
+    data.add(entry, 30);
+    total.merge(entry);
+  }
+  const Fit fit = weighted_fit<kUnknowns>(total, map, kAllScales);
+  std::vector<GroupedFactors> grouped(entries.size());
+  std::vector<const ScaleFactors*> list;
+  std::vector<const GroupedFactors*> grouped_list;
+  for (std::size_t b = 0; b < entries.size(); ++b) {
+    for (std::size_t s = 0; s < kScales; ++s) {
+      EXPECT_EQ(group_of(s), s + 1 == kScales ? 1U : 0U);
+      for (int i = 0; i < kRowColumns; ++i) {
+        const GalerkinRow row = std::sqrt(fit.weight[s]) * entries[b].factor[s].row(i);
+        grouped[b].factor[group_of(s)].absorb(row.cast<float>());
+      }
+    }
+    const auto gram = weighted_gram<kUnknowns>(fit, entries[b], columns);
+    EXPECT_LT((weighted_gram<kUnknowns>(fit, grouped[b], columns) - gram).norm(),
+              1e-4 * gram.norm());
+    const Fit::Vector score = score_of<kUnknowns>(fit, entries[b], columns);
+    EXPECT_LT((score_of<kUnknowns>(fit, grouped[b], columns) - score).norm(), 1e-2 * score.norm());
+    list.push_back(&entries[b]);
+    grouped_list.push_back(&grouped[b]);
+  }
+  const double of_scales = held_out_nmse_of<kUnknowns, 5>(fit, EntryList{list}, map);
+  EXPECT_NEAR((held_out_nmse_of<kUnknowns, 5>(fit, GroupedList{grouped_list}, map)) / of_scales,
+              1.0, 1e-3);
+  const auto covariance = score_covariance<kUnknowns>(fit, EntryList{list}, map);
+  const auto of_groups = score_covariance<kUnknowns>(fit, GroupedList{grouped_list}, map);
+  EXPECT_LT((of_groups - covariance).norm(), 1e-2 * covariance.norm());
+}
+
 /// Rows of a smooth law of any width beside a spring and a viscous part of 2 N s/m per kg.
 ScaleFactors rows_of_width(double width_mps, double noise, int count) {
   std::mt19937_64 random{7};
