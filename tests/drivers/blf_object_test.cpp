@@ -23,7 +23,7 @@ using test::TemporaryFile;
 using testing::HasSubstr;
 
 template <class Number>
-void put(std::string& bytes, std::size_t at, Number number) {
+void put_number(std::string& bytes, std::size_t at, Number number) {
   if (bytes.size() < at + sizeof number) bytes.resize(at + sizeof number);
   std::memcpy(bytes.data() + at, &number, sizeof number);
 }
@@ -38,12 +38,12 @@ struct Object {
 std::string bytes_of(const Object& object) {
   const std::size_t header = object.version == 1 ? 32 : 40;
   std::string out = "LOBJ";
-  put(out, 4, static_cast<std::uint16_t>(header));
-  put(out, 6, object.version);
-  put(out, 8, static_cast<std::uint32_t>(header + object.body.size()));
-  put(out, 12, object.type);
-  put(out, 16, object.flags);
-  put(out, 24, object.stamp);
+  put_number(out, 4, static_cast<std::uint16_t>(header));
+  put_number(out, 6, object.version);
+  put_number(out, 8, static_cast<std::uint32_t>(header + object.body.size()));
+  put_number(out, 12, object.type);
+  put_number(out, 16, object.flags);
+  put_number(out, 24, object.stamp);
   out.resize(header);
   return out + object.body;
 }
@@ -52,11 +52,12 @@ std::string bytes_of(const Object& object) {
 std::string can_message(std::uint32_t id, std::uint8_t length = 8, std::uint8_t flags = 0,
                         std::uint16_t channel = 1) {
   std::string body;
-  put(body, 0, channel);
-  put(body, 2, flags);
-  put(body, 3, length);
-  put(body, 4, id);
-  for (std::size_t i = 0; i < 8; ++i) put(body, 8 + i, static_cast<std::uint8_t>(0x11 * (i + 1)));
+  put_number(body, 0, channel);
+  put_number(body, 2, flags);
+  put_number(body, 3, length);
+  put_number(body, 4, id);
+  for (std::size_t i = 0; i < 8; ++i)
+    put_number(body, 8 + i, static_cast<std::uint8_t>(0x11 * (i + 1)));
   return body;
 }
 /// CAN_FD_MESSAGE: channel, flags, dlc, identifier, length of the frame, arbitration bits, FD
@@ -64,11 +65,11 @@ std::string can_message(std::uint32_t id, std::uint8_t length = 8, std::uint8_t 
 std::string fd_message(std::uint32_t id, std::uint8_t bytes, std::uint8_t fd_flags,
                        std::uint8_t flags = 0) {
   std::string body;
-  put(body, 0, std::uint16_t{3});
-  put(body, 2, flags);
-  put(body, 4, id);
-  put(body, 13, fd_flags);
-  put(body, 14, bytes);
+  put_number(body, 0, std::uint16_t{3});
+  put_number(body, 2, flags);
+  put_number(body, 4, id);
+  put_number(body, 13, fd_flags);
+  put_number(body, 14, bytes);
   body.resize(20);
   for (std::size_t i = 0; i < bytes; ++i) body += static_cast<char>(i + 1);
   return body;
@@ -76,10 +77,10 @@ std::string fd_message(std::uint32_t id, std::uint8_t bytes, std::uint8_t fd_fla
 /// CAN_FD_MESSAGE_64: channel, dlc, valid bytes, transmissions, identifier, length, flags.
 std::string fd_message_64(std::uint32_t id, std::uint8_t bytes, std::uint32_t flags) {
   std::string body;
-  put(body, 0, std::uint8_t{200});
-  put(body, 2, bytes);
-  put(body, 4, id);
-  put(body, 12, flags);
+  put_number(body, 0, std::uint8_t{200});
+  put_number(body, 2, bytes);
+  put_number(body, 4, id);
+  put_number(body, 12, flags);
   body.resize(40);
   for (std::size_t i = 0; i < bytes; ++i) body += static_cast<char>(i + 1);
   return body;
@@ -90,7 +91,7 @@ struct ReadObject {
   CanFrame frame;
   std::uint32_t channel{77};
 };
-ReadObject read(const std::string& bytes) {
+ReadObject read_object(const std::string& bytes) {
   ReadObject out;
   out.frame.id = 5;  // what another frame left behind
   out.frame.fd = out.frame.remote = out.frame.error = out.frame.extended = true;
@@ -103,7 +104,7 @@ TEST(BlfObject, ReadsClassicMessages) {
   for (const std::uint32_t type : {1U, 86U}) {
     for (const std::uint16_t version : {std::uint16_t{1}, std::uint16_t{2}}) {
       const ReadObject out =
-          read(bytes_of({type, can_message(0x123, 3), 1'500'000'007, 2, version}));
+          read_object(bytes_of({type, can_message(0x123, 3), 1'500'000'007, 2, version}));
       ASSERT_EQ(out.kind, BlfKind::kFrame);
       EXPECT_EQ(out.channel, 1U);
       EXPECT_EQ(out.frame.time_ns, 1'500'000'007);
@@ -114,18 +115,19 @@ TEST(BlfObject, ReadsClassicMessages) {
       EXPECT_FALSE(out.frame.extended || out.frame.fd || out.frame.remote || out.frame.error);
     }
   }
-  const ReadObject wide = read(bytes_of({1, can_message(0x80000000U | 0x18EBFF00U)}));
+  const ReadObject wide = read_object(bytes_of({1, can_message(0x80000000U | 0x18EBFF00U)}));
   EXPECT_TRUE(wide.frame.extended);
   EXPECT_EQ(wide.frame.id, 0x18EBFF00U);
-  const ReadObject remote = read(bytes_of({1, can_message(0x7FF, 4, 0x80)}));
+  const ReadObject remote = read_object(bytes_of({1, can_message(0x7FF, 4, 0x80)}));
   EXPECT_TRUE(remote.frame.remote);
   EXPECT_EQ(remote.frame.length, 4);
   EXPECT_EQ(remote.frame.data[0], 0);
-  EXPECT_EQ(read(bytes_of({1, can_message(1, 15)})).frame.length, 8) << "eight bytes at most";
+  EXPECT_EQ(read_object(bytes_of({1, can_message(1, 15)})).frame.length, 8)
+      << "eight bytes at most";
 }
 
 TEST(BlfObject, ReadsCanFd) {
-  const ReadObject out = read(bytes_of({100, fd_message(0x321, 12, 0x1 | 0x2)}));
+  const ReadObject out = read_object(bytes_of({100, fd_message(0x321, 12, 0x1 | 0x2)}));
   ASSERT_EQ(out.kind, BlfKind::kFrame);
   EXPECT_EQ(out.channel, 3U);
   EXPECT_EQ(out.frame.id, 0x321U);
@@ -133,11 +135,12 @@ TEST(BlfObject, ReadsCanFd) {
   EXPECT_EQ(out.frame.fd_flags, 1);
   EXPECT_EQ(out.frame.length, 12);
   EXPECT_EQ(out.frame.data[11], 12);
-  EXPECT_EQ(read(bytes_of({100, fd_message(1, 8, 0x1 | 0x4)})).frame.fd_flags, 2);
-  EXPECT_EQ(read(bytes_of({100, fd_message(1, 8, 0x6)})).frame.fd_flags, 0) << "no FD frame";
-  EXPECT_FALSE(read(bytes_of({100, fd_message(1, 8, 0x6)})).frame.fd);
-  EXPECT_TRUE(read(bytes_of({100, fd_message(1, 0, 0, 0x80)})).frame.remote);
-  const ReadObject full = read(bytes_of({101, fd_message_64(0x80000001U, 64, 0x1000 | 0x2000)}));
+  EXPECT_EQ(read_object(bytes_of({100, fd_message(1, 8, 0x1 | 0x4)})).frame.fd_flags, 2);
+  EXPECT_EQ(read_object(bytes_of({100, fd_message(1, 8, 0x6)})).frame.fd_flags, 0) << "no FD frame";
+  EXPECT_FALSE(read_object(bytes_of({100, fd_message(1, 8, 0x6)})).frame.fd);
+  EXPECT_TRUE(read_object(bytes_of({100, fd_message(1, 0, 0, 0x80)})).frame.remote);
+  const ReadObject full =
+      read_object(bytes_of({101, fd_message_64(0x80000001U, 64, 0x1000 | 0x2000)}));
   ASSERT_EQ(full.kind, BlfKind::kFrame);
   EXPECT_EQ(full.channel, 200U);
   EXPECT_TRUE(full.frame.extended && full.frame.fd);
@@ -145,9 +148,9 @@ TEST(BlfObject, ReadsCanFd) {
   EXPECT_EQ(full.frame.length, 64);
   EXPECT_EQ(full.frame.data[63], 64);
   EXPECT_EQ(full.frame.fd_flags, 1);
-  EXPECT_EQ(read(bytes_of({101, fd_message_64(1, 1, 0x1000 | 0x4000)})).frame.fd_flags, 2);
-  EXPECT_TRUE(read(bytes_of({101, fd_message_64(1, 0, 0x10)})).frame.remote);
-  EXPECT_FALSE(read(bytes_of({101, fd_message_64(1, 0, 0)})).frame.remote);
+  EXPECT_EQ(read_object(bytes_of({101, fd_message_64(1, 1, 0x1000 | 0x4000)})).frame.fd_flags, 2);
+  EXPECT_TRUE(read_object(bytes_of({101, fd_message_64(1, 0, 0x10)})).frame.remote);
+  EXPECT_FALSE(read_object(bytes_of({101, fd_message_64(1, 0, 0)})).frame.remote);
 }
 
 TEST(BlfObject, IsBadWhereItIsTooShortForItsType) {
@@ -155,22 +158,25 @@ TEST(BlfObject, IsBadWhereItIsTooShortForItsType) {
   for (const auto& [type, body] :
        {std::pair{1U, can_message(1)}, std::pair{100U, fd_message(1, 12, 1)},
         std::pair{101U, fd_message_64(1, 12, 0x1000)}, std::pair{73U, error}}) {
-    EXPECT_EQ(read(bytes_of({type, body})).kind, BlfKind::kFrame) << type;
-    EXPECT_EQ(read(bytes_of({type, body.substr(0, body.size() - 1)})).kind, BlfKind::kBad) << type;
-    EXPECT_EQ(read(bytes_of({type, ""}).substr(0, 31)).kind, BlfKind::kBad) << "its header";
-    EXPECT_EQ(read(bytes_of({type, body, 0, 2, 3})).kind, BlfKind::kOther) << "another version";
-    EXPECT_EQ(read(bytes_of({type, body, 0, 2, 0})).kind, BlfKind::kOther);
+    EXPECT_EQ(read_object(bytes_of({type, body})).kind, BlfKind::kFrame) << type;
+    EXPECT_EQ(read_object(bytes_of({type, body.substr(0, body.size() - 1)})).kind, BlfKind::kBad)
+        << type;
+    EXPECT_EQ(read_object(bytes_of({type, ""}).substr(0, 31)).kind, BlfKind::kBad) << "its header";
+    EXPECT_EQ(read_object(bytes_of({type, body, 0, 2, 3})).kind, BlfKind::kOther)
+        << "another version";
+    EXPECT_EQ(read_object(bytes_of({type, body, 0, 2, 0})).kind, BlfKind::kOther);
   }
-  EXPECT_EQ(read(bytes_of({100, fd_message(1, 65, 1)})).kind, BlfKind::kBad) << "64 bytes at most";
-  EXPECT_TRUE(read(bytes_of({73, error})).frame.error);
-  EXPECT_EQ(read(bytes_of({73, error})).channel, 0x0202U);
+  EXPECT_EQ(read_object(bytes_of({100, fd_message(1, 65, 1)})).kind, BlfKind::kBad)
+      << "64 bytes at most";
+  EXPECT_TRUE(read_object(bytes_of({73, error})).frame.error);
+  EXPECT_EQ(read_object(bytes_of({73, error})).channel, 0x0202U);
   for (const std::uint32_t type : {0U, 2U, 10U, 72U, 85U, 99U, 102U})
-    EXPECT_EQ(read(bytes_of({type, can_message(1)})).kind, BlfKind::kOther) << type;
+    EXPECT_EQ(read_object(bytes_of({type, can_message(1)})).kind, BlfKind::kOther) << type;
 }
 
 TEST(BlfObject, CountsTimeInTensOfMicrosecondsOrNanoseconds) {
   const auto at = [](std::uint64_t stamp, std::uint32_t flags) {
-    return read(bytes_of({1, can_message(1), stamp, flags}));
+    return read_object(bytes_of({1, can_message(1), stamp, flags}));
   };
   EXPECT_EQ(at(123, 1).frame.time_ns, 1'230'000);
   EXPECT_EQ(at(123, 2).frame.time_ns, 123);
@@ -186,9 +192,9 @@ TEST(BlfBase, IsSixteenBytesFromLobjOn) {
   ASSERT_TRUE(read_blf_base(bytes));
   EXPECT_EQ(read_blf_base(bytes)->size, 33U);
   EXPECT_EQ(read_blf_base(bytes)->type, 10U);
-  put(bytes, 8, std::uint32_t{16});
+  put_number(bytes, 8, std::uint32_t{16});
   EXPECT_TRUE(read_blf_base(bytes));
-  put(bytes, 8, std::uint32_t{15});
+  put_number(bytes, 8, std::uint32_t{15});
   EXPECT_FALSE(read_blf_base(bytes));
   bytes[3] = 'K';
   EXPECT_FALSE(read_blf_base(bytes));
@@ -198,7 +204,7 @@ TEST(BlfBase, IsSixteenBytesFromLobjOn) {
 using Fields = std::array<std::uint16_t, 8>;
 std::int64_t system_time(const Fields& fields) {
   std::string bytes;
-  for (std::size_t i = 0; i < 8; ++i) put(bytes, 2 * i, fields[i]);
+  for (std::size_t i = 0; i < 8; ++i) put_number(bytes, 2 * i, fields[i]);
   return read_system_time(bytes);
 }
 
@@ -216,21 +222,21 @@ TEST(BlfSystemTime, IsADateAndATimeOfDay) {
     EXPECT_EQ(system_time(none), 0);
 }
 
-std::string file_header(std::uint32_t size = 144) {
+std::string blf_header(std::uint32_t size = 144) {
   std::string out = "LOGG";
-  put(out, 4, size);
+  put_number(out, 4, size);
   const Fields start{2020, 9, 0, 13, 12, 26, 40, 0};
-  for (std::size_t i = 0; i < 8; ++i) put(out, 40 + 2 * i, start[i]);
+  for (std::size_t i = 0; i < 8; ++i) put_number(out, 40 + 2 * i, start[i]);
   out.resize(size);
   return out;
 }
 std::string plain_container(const std::string& content) {
   std::string out = "LOBJ";
-  put(out, 4, std::uint16_t{16});
-  put(out, 6, std::uint16_t{1});
-  put(out, 8, static_cast<std::uint32_t>(32 + content.size()));
-  put(out, 12, std::uint32_t{10});
-  put(out, 24, static_cast<std::uint32_t>(content.size()));
+  put_number(out, 4, std::uint16_t{16});
+  put_number(out, 6, std::uint16_t{1});
+  put_number(out, 8, static_cast<std::uint32_t>(32 + content.size()));
+  put_number(out, 12, std::uint32_t{10});
+  put_number(out, 24, static_cast<std::uint32_t>(content.size()));
   out.resize(32);
   out += content;
   return out + std::string(content.size() % 4, '\0');  // as Vector's tools pad it
@@ -242,8 +248,8 @@ struct FileFrames {
   std::string error;
   Errc reason{};
 };
-FileFrames frames_of(const std::string& bytes, const std::vector<std::string>& interfaces = {},
-                     bool skip = false) {
+FileFrames blf_file(const std::string& bytes, const std::vector<std::string>& interfaces = {},
+                    bool skip = false) {
   const TemporaryFile file{bytes};
   auto source =
       BlfSource::open({.path = file.path(), .skip_bad_lines = skip, .interfaces = interfaces});
@@ -267,43 +273,43 @@ TEST(BlfFile, JoinsObjectsAcrossContainersWithTheStartOfTheMeasurement) {
   for (std::uint64_t i = 0; i < 50; ++i) content += frame_at(1000 * i);
   for (const std::size_t cut :
        {std::size_t{1}, std::size_t{15}, std::size_t{16}, std::size_t{33}, std::size_t{1000}}) {
-    const std::string file = file_header() + plain_container(content.substr(0, cut)) +
+    const std::string file = blf_header() + plain_container(content.substr(0, cut)) +
                              plain_container(content.substr(cut));
-    const FileFrames out = frames_of(file);
+    const FileFrames out = blf_file(file);
     ASSERT_EQ(out.frames.size(), 50U) << cut << out.error;
     EXPECT_EQ(out.reason, Errc::kEndOfStream);
     EXPECT_EQ(out.frames[49].time_ns, 1'600'000'000'000'049'000);
     EXPECT_FALSE(out.health.truncated);
     EXPECT_EQ(out.health.malformed, 0U);
   }
-  const FileFrames bare = frames_of(file_header(72) + frame_at(5) + frame_at(6));
+  const FileFrames bare = blf_file(blf_header(72) + frame_at(5) + frame_at(6));
   EXPECT_EQ(bare.frames.size(), 2U) << "without containers" << bare.error;
-  EXPECT_EQ(frames_of(file_header(72)).reason, Errc::kEndOfStream);
-  EXPECT_THAT(frames_of(file_header(72).substr(0, 71)).error, HasSubstr("ends within its header"));
+  EXPECT_EQ(blf_file(blf_header(72)).reason, Errc::kEndOfStream);
+  EXPECT_THAT(blf_file(blf_header(72).substr(0, 71)).error, HasSubstr("ends within its header"));
 }
 
 TEST(BlfFile, PassesOverOtherObjectsOfAnySizeAndEightBytesOfPadding) {
   const std::string large = bytes_of({65, std::string(300'000, 'x')});
   const FileFrames out =
-      frames_of(file_header() + plain_container(frame_at(1) + large + frame_at(2)));
+      blf_file(blf_header() + plain_container(frame_at(1) + large + frame_at(2)));
   EXPECT_EQ(out.frames.size(), 2U) << out.error;
   EXPECT_EQ(out.health.ignored, 1U);
   EXPECT_FALSE(out.health.truncated);
   for (const auto& [padding, good] : {std::pair{8U, true}, std::pair{9U, false}}) {
     const std::string zeros(padding, '\0');
     const FileFrames between =
-        frames_of(file_header() + plain_container(frame_at(1) + zeros + frame_at(2)));
+        blf_file(blf_header() + plain_container(frame_at(1) + zeros + frame_at(2)));
     EXPECT_EQ(between.frames.size(), good ? 2U : 1U) << padding;
     EXPECT_EQ(between.reason, good ? Errc::kEndOfStream : Errc::kMalformed);
-    const FileFrames outside = frames_of(file_header() + zeros + plain_container(frame_at(1)));
+    const FileFrames outside = blf_file(blf_header() + zeros + plain_container(frame_at(1)));
     EXPECT_EQ(outside.frames.size(), good ? 1U : 0U) << padding;
   }
 }
 
 TEST(BlfFile, DeliversTheChannelsThatWereAskedFor) {
   const std::string file =
-      file_header() + plain_container(frame_at(1, 1) + frame_at(2, 2) + frame_at(3, 300));
-  const FileFrames out = frames_of(file, {"can2", "can300"});
+      blf_header() + plain_container(frame_at(1, 1) + frame_at(2, 2) + frame_at(3, 300));
+  const FileFrames out = blf_file(file, {"can2", "can300"});
   ASSERT_EQ(out.frames.size(), 2U);
   EXPECT_EQ(out.frames[0].time_ns % 1000, 2);
   EXPECT_EQ(out.health.ignored, 1U);
@@ -312,16 +318,16 @@ TEST(BlfFile, DeliversTheChannelsThatWereAskedFor) {
 
 TEST(BlfFile, NamesTheContainerWhereTimeGoesBack) {
   constexpr std::uint64_t kSecond = 1'000'000'000;
-  const std::string head = file_header() + plain_container(frame_at(5 * kSecond));
+  const std::string head = blf_header() + plain_container(frame_at(5 * kSecond));
   const std::string file = head + plain_container(frame_at(4 * kSecond + 1) +
                                                   frame_at(4 * kSecond) + frame_at(6 * kSecond));
-  const FileFrames out = frames_of(file);
+  const FileFrames out = blf_file(file);
   EXPECT_EQ(out.frames.size(), 2U) << "by less than a second it is held";
   EXPECT_EQ(out.reason, Errc::kMalformed);
   EXPECT_THAT(out.error, HasSubstr(fmt::format("in the container at byte {}: found a time that "
                                                "goes back by a second or more",
                                                head.size())));
-  const FileFrames skipped = frames_of(file, {}, true);
+  const FileFrames skipped = blf_file(file, {}, true);
   EXPECT_EQ(skipped.frames.size(), 3U);
   EXPECT_EQ(skipped.health.malformed, 1U);
   EXPECT_EQ(skipped.health.reordered, 1U);
@@ -329,10 +335,10 @@ TEST(BlfFile, NamesTheContainerWhereTimeGoesBack) {
 
 TEST(BlfFile, OfAnUnknownCompressionIsDamaged) {
   std::string container = plain_container(frame_at(1));
-  put(container, 16, std::uint16_t{3});
-  const std::string file = file_header() + container + plain_container(frame_at(2));
-  EXPECT_THAT(frames_of(file).error, HasSubstr("the container at byte 144 is damaged"));
-  const FileFrames skipped = frames_of(file, {}, true);
+  put_number(container, 16, std::uint16_t{3});
+  const std::string file = blf_header() + container + plain_container(frame_at(2));
+  EXPECT_THAT(blf_file(file).error, HasSubstr("the container at byte 144 is damaged"));
+  const FileFrames skipped = blf_file(file, {}, true);
   EXPECT_EQ(skipped.frames.size(), 1U);
   EXPECT_EQ(skipped.health.malformed, 1U);
 }
