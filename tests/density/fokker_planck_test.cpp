@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <utility>
 
 #include "tests/density/white_run.hpp"
 
@@ -105,6 +107,82 @@ TEST(FokkerPlanck, ForgetsWhatWasBefore) {
   ASSERT_TRUE(found.known_input.verdict.has_number);
   EXPECT_NEAR(found.known_input.level_n.value, 4000.0, 10.0);
   EXPECT_NEAR(found.weak.level_n.value, 4000.0, 0.15 * 4000.0);
+  EXPECT_NEAR(found.paper.level_n.value, 4000.0, 0.15 * 4000.0);
+}
+
+TEST(FokkerPlanck, StatesTheLevelOfItsInput) {
+  double squares = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto found = white_run({.seed = seed}, 120.0)->estimates(kMassKg, kStiffnessNpm);
+    const double level = sim::WhiteInputConfig{}.input_level;
+    EXPECT_NEAR(found.input_level.value / level, 1.0, 0.1);
+    squares += std::pow((found.input_level.value - level) / found.input_level.std, 2) / 10.0;
+  }
+  EXPECT_GT(std::sqrt(squares), 0.4);
+  EXPECT_LT(std::sqrt(squares), 1.8);
+  const auto brief = white_run({.seed = 1}, 1.0)->estimates(kMassKg, kStiffnessNpm);
+  EXPECT_EQ(brief.input_level.value, 0.0) << "no transform is complete";
+}
+
+// A kernel of a quarter of the rms velocity, three of them left out, as far as 99 % of the mass.
+TEST(FokkerPlanck, DrawsThePublishedFormFromEndToEnd) {
+  for (const bool absolute : {true, false}) {
+    const auto run =
+        white_run({.seed = 9, .friction_positive_n = 9150.0, .friction_negative_n = 7562.0}, 200.0,
+                  {.deflection_is_absolute = absolute});
+    const auto& curve = run->estimates(kMassKg, kStiffnessNpm).paper.curve;
+    const double reach_mps = speed_quantile(run->velocities(), 0.99);
+    const double width_mps = 0.25 * run->velocity_rms_mps();
+    const PaperForm form =
+        run->paper_form(kMassKg, kStiffnessNpm, width_mps, 3.0 * width_mps, reach_mps);
+    const double constant = absolute ? 0.0 : form.offset();
+    double samples = 0.0;
+    for (std::size_t i = 0; i < 22; ++i) {
+      const bool positive = i >= 11;
+      const std::size_t node = positive ? i - 11 : 10 - i;
+      EXPECT_NEAR(curve[i].velocity_mps,
+                  (positive ? 0.1 : -0.1) * static_cast<double>(node) * reach_mps, 1e-12);
+      const double alpha = node == 0 ? form.offset_mps2[positive ? 1 : 0]
+                                     : form.segments[positive ? 1 : 0][node - 1].alpha_mps2;
+      EXPECT_NEAR(curve[i].force_n, 0.5 * kMassKg * (alpha - constant), 1e-6) << i;
+      samples += static_cast<double>(curve[i].samples);
+    }
+    EXPECT_NEAR(samples, static_cast<double>(run->velocities().samples()), 25.0);
+  }
+}
+
+// The curve's nodes, with the samples of their hats: on a broken line each sample is shared by two.
+TEST(FokkerPlanck, CountsTheSamplesOfANode) {
+  FokkerPlanck run{{}};
+  std::int64_t tick = 0;
+  const auto give = [&](double velocity_mps, int samples) {
+    for (int i = 0; i < samples; ++i, ++tick)
+      run.update({.tick = tick,
+                  .deflection_m = 1e-3 * std::sin(0.7 * static_cast<double>(tick)),
+                  .velocity_mps = velocity_mps,
+                  .frame_mps2 = std::sin(0.2 * static_cast<double>(tick)),
+                  .relative_mps2 = std::cos(0.3 * static_cast<double>(tick))});
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    for (const auto& [speed_mps, samples] :
+         {std::pair{0.75e-3, 4000}, std::pair{2.25e-3, 800}, std::pair{4.25e-3, 1000},
+          std::pair{6.75e-3, 1200}, std::pair{9.5e-3, 1000}, std::pair{12.75e-3, 1000},
+          std::pair{16.75e-3, 1000}, std::pair{22.5e-3, 1000}, std::pair{40.0e-3, 1000}})
+      give(sign * speed_mps, samples);
+  }
+  const auto found = run.estimates(kMassKg, kStiffnessNpm);
+  const MethodResult& weak = found.weak;
+  ASSERT_EQ(weak.points, 18U);
+  for (std::size_t i = 0; i < 18; ++i) {
+    const std::size_t node = i < 9 ? 8 - i : i - 9;
+    const double speed = node == 0 ? 0.0 : kDefaultCurveNodesMps[node - 1];
+    EXPECT_NEAR(weak.curve[i].velocity_mps, i < 9 ? -speed : speed, 1e-15);
+    // 0.75 and 2.25 mm/s lie a quarter and three quarters on the way to 3 mm/s.
+    const std::array<double, 9> expected{
+        3000.0 + 200.0, 1000.0 + 600.0 + 500.0, 500.0 + 600.0, 600.0 + 500.0, 500.0 + 500.0,
+        500.0 + 500.0,  500.0 + 500.0,          500.0,         1000.0};
+    EXPECT_NEAR(static_cast<double>(weak.curve[i].samples), expected[node], 4.0) << node;
+  }
 }
 
 TEST(FokkerPlanck, TwoHalvesMergeToTheWhole) {

@@ -161,6 +161,15 @@ TEST(PaperForm, TellsTheSidesApart) {
   EXPECT_NEAR(x.aa / (2.5 * half * half * sum(4)), 1.0, 0.02);
   EXPECT_EQ(x.bd, 0.0);
   EXPECT_EQ(x.br, 0.0);
+  DeflectionIntegrals cut = over_y;  // whose density does not end at 0
+  cut.p1_dp1 = 0.2;
+  const PaperIntegrals with = fit_paper_form(*velocities, cut, config).integrals;
+  // int of v p^2 of either side: that of p^2 times 3 mm/s and half a length.
+  const auto arm = [&](std::size_t s) { return kFromMps + 0.5 * kLengthMps[s]; };
+  EXPECT_NEAR(with.cd / (-0.1 * (squares[1] * arm(1) - squares[0] * arm(0))), 1.0, 0.05);
+  EXPECT_NEAR(
+      with.bd / (0.1 * (squares[1] * arm(1) / kLengthMps[1] + squares[0] * arm(0) / kLengthMps[0])),
+      1.0, 0.02);
 }
 
 // A deflection whose mean is not zero: the spring's force adds to both sides.
