@@ -30,23 +30,23 @@ std::unique_ptr<CandidateList> listed(const BaseForce& base = {0.2, 140.0}) {
 }
 
 /// One instant of frame and wheelsets: deflections, velocities, accelerations.
-struct Instant {
+struct Reading {
   double frame, one, two;
   double frame_rate, one_rate, two_rate;
   double frame_accel, one_accel, two_accel;
 };
-constexpr Instant kInstant{0.7e-3, -0.3e-3, 0.2e-3, 11e-3, 4e-3, 9e-3, 0.3, -2.0, 1.5};
+constexpr Reading kInstant{0.7e-3, -0.3e-3, 0.2e-3, 11e-3, 4e-3, 9e-3, 0.3, -2.0, 1.5};
 constexpr BaseForce kBase{0.2, 140.0};
 constexpr double kWidth = 8e-3;
 
 double sign_of(double velocity) { return std::tanh(velocity / kWidth); }
-double slope_of(double velocity) { return (1.0 - std::pow(sign_of(velocity), 2)) / kWidth; }
+double tangent_of(double velocity) { return (1.0 - std::pow(sign_of(velocity), 2)) / kWidth; }
 /// k y + F(v) with y = 2 z_b - z_1 - z_2.
-double force_of(const Instant& x) {
+double force_of(const Reading& x) {
   return kBase.stiffness * (2.0 * x.frame - x.one - x.two) +
          kBase.coulomb * sign_of(2.0 * x.frame_rate - x.one_rate - x.two_rate);
 }
-Row row_of(const Instant& x) {
+Row row_of(const Reading& x) {
   Row row = Row::Zero();
   const double v = 2.0 * x.frame_rate - x.one_rate - x.two_rate;
   row[kFrameTwice] = x.frame;
@@ -55,11 +55,11 @@ Row row_of(const Instant& x) {
   row[kWheelset1Once] = x.one_rate;
   row[kWheelset2Twice] = x.two;
   row[kWheelset2Once] = x.two_rate;
-  row[kTangentV] = slope_of(v) * v;
-  row[kTangent1] = slope_of(v) * x.one_rate;
-  row[kTangent2] = slope_of(v) * x.two_rate;
-  row[kTangentRate1] = slope_of(v) * x.one_accel;
-  row[kTangentRate2] = slope_of(v) * x.two_accel;
+  row[kTangentV] = tangent_of(v) * v;
+  row[kTangent1] = tangent_of(v) * x.one_rate;
+  row[kTangent2] = tangent_of(v) * x.two_rate;
+  row[kTangentRate1] = tangent_of(v) * x.one_accel;
+  row[kTangentRate2] = tangent_of(v) * x.two_accel;
   return row;
 }
 const Regressor& sensor(const CandidateList& list, Effect effect, std::uint8_t form) {
@@ -82,10 +82,10 @@ TEST(Candidates, AWrongGainIsTheForcesSlope) {
   const auto list = listed(kBase);
   const Row row = row_of(kInstant);
   for (const auto& [form, deflection, rate] :
-       {std::tuple{kFrameForm, &Instant::frame, &Instant::frame_rate},
-        std::tuple{kWheelset1Form, &Instant::one, &Instant::one_rate},
-        std::tuple{kWheelset2Form, &Instant::two, &Instant::two_rate}}) {
-    Instant wrong = kInstant;
+       {std::tuple{kFrameForm, &Reading::frame, &Reading::frame_rate},
+        std::tuple{kWheelset1Form, &Reading::one, &Reading::one_rate},
+        std::tuple{kWheelset2Form, &Reading::two, &Reading::two_rate}}) {
+    Reading wrong = kInstant;
     wrong.*deflection *= 1.0 - kSmall;
     wrong.*rate *= 1.0 - kSmall;
     EXPECT_NEAR(value_of(sensor(*list, Effect::kGainError, form), row),
@@ -100,9 +100,9 @@ TEST(Candidates, ALateChannelIsTheForcesSlope) {
   const auto list = listed(kBase);
   Row row = row_of(kInstant);
   for (const auto& [form, deflection, rate, accel] :
-       {std::tuple{kWheelset1Form, &Instant::one, &Instant::one_rate, &Instant::one_accel},
-        std::tuple{kWheelset2Form, &Instant::two, &Instant::two_rate, &Instant::two_accel}}) {
-    Instant later = kInstant;
+       {std::tuple{kWheelset1Form, &Reading::one, &Reading::one_rate, &Reading::one_accel},
+        std::tuple{kWheelset2Form, &Reading::two, &Reading::two_rate, &Reading::two_accel}}) {
+    Reading later = kInstant;
     later.*deflection += kSmall * later.*rate;
     later.*rate += kSmall * later.*accel;
     // The columns have the wheelsets' sign in y and v: minus.
@@ -194,7 +194,7 @@ TEST(Candidates, StopsPushAgainstTheDeflection) {
 }
 
 /// The columns of a slope, by number.
-std::map<int, double> slope_of(const Candidate& candidate, std::size_t regressor) {
+std::map<int, double> columns_of(const Candidate& candidate, std::size_t regressor) {
   std::map<int, double> out;
   const Regressor& r = candidate.regressor[regressor];
   for (std::size_t p = 0; p < r.count; ++p) out[r.column[p]] += r.weight[p];
@@ -204,7 +204,7 @@ Candidate point(Effect effect, std::uint8_t variant, std::uint8_t form = kPlainF
   Candidate out{.effect = effect, .variant = variant, .form = form, .count = 1};
   return out;
 }
-using Slope = std::map<int, double>;
+using SlopeColumns = std::map<int, double>;
 
 // A step of the grid: half the difference of the neighbours, or the whole to the only one.
 TEST(CandidateSlopes, AreDifferencesAlongTheGrid) {
@@ -222,16 +222,17 @@ TEST(CandidateSlopes, AreDifferencesAlongTheGrid) {
       const int low = std::max(i - 1, 0);
       const int high = std::min(i + 1, last);
       const double weight = 1.0 / (high - low);
-      EXPECT_EQ(slope_of(found, 1), (Slope{{column + low, -weight}, {column + high, weight}}));
+      EXPECT_EQ(columns_of(found, 1),
+                (SlopeColumns{{column + low, -weight}, {column + high, weight}}));
     }
   }
   const Candidate stop = with_slopes(point(Effect::kBumpStop, 2), grids);
   EXPECT_EQ(
-      slope_of(stop, 1),
-      (Slope{
+      columns_of(stop, 1),
+      (SlopeColumns{
           {kBumpUp + 1, -0.5}, {kBumpUp + 3, 0.5}, {kBumpDown + 1, 0.5}, {kBumpDown + 3, -0.5}}));
   const Candidate down = with_slopes(point(Effect::kBumpStop, 2, kOneSidedDown), grids);
-  EXPECT_EQ(slope_of(down, 1), (Slope{{kBumpDown + 1, 0.5}, {kBumpDown + 3, -0.5}}));
+  EXPECT_EQ(columns_of(down, 1), (SlopeColumns{{kBumpDown + 1, 0.5}, {kBumpDown + 3, -0.5}}));
 }
 
 // Pitch: three frequencies of each of three slips, of which each has its own slope.
@@ -245,13 +246,14 @@ TEST(CandidateSlopes, OfPitchAreThoseOfFrequencyAndSlip) {
     const int low = std::max(i - 1, line);
     const int high = std::min(i + 1, line + 2);
     const double frequency = 1.0 / (high - low);
-    EXPECT_EQ(slope_of(found, 1),
-              (Slope{{kPitchSign + low, -frequency}, {kPitchSign + high, frequency}}))
+    EXPECT_EQ(columns_of(found, 1),
+              (SlopeColumns{{kPitchSign + low, -frequency}, {kPitchSign + high, frequency}}))
         << i;
     const int less = i >= 3 ? i - 3 : i;
     const int more = i < 6 ? i + 3 : i;
     const double slip = 3.0 / (more - less);
-    EXPECT_EQ(slope_of(found, 2), (Slope{{kPitchSign + less, -slip}, {kPitchSign + more, slip}}))
+    EXPECT_EQ(columns_of(found, 2),
+              (SlopeColumns{{kPitchSign + less, -slip}, {kPitchSign + more, slip}}))
         << i;
   }
 }

@@ -110,6 +110,20 @@ Codes::Change spikes(std::size_t channel, const std::vector<std::int64_t>& ticks
   };
 }
 
+TEST(GuardCodes, AWrongSampleIsKnownTwoSecondsLater) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    Codes codes;
+    codes.run(590, spikes(c, {300}));
+    WrongSample wrong;
+    EXPECT_FALSE(codes.guard().next_wrong_sample(wrong));
+    codes.run(20);
+    ASSERT_TRUE(codes.guard().next_wrong_sample(wrong)) << c;
+    EXPECT_EQ(wrong.tick, 300);
+    EXPECT_EQ(wrong.channel, c);
+    EXPECT_FALSE(codes.guard().next_wrong_sample(wrong)) << "once";
+  }
+}
+
 TEST(GuardCodes, ThreeWrongSamplesAreSpikes) {
   Codes two;
   two.run(12'000, spikes(2, {1000, 2310}));

@@ -218,7 +218,7 @@ TEST(WheelsetWatch, NamesSamplesLostOrRepeatedInBoth) {
       EXPECT_EQ(fault.channel, FaultChannel::kAll);
       EXPECT_EQ(fault.size, std::abs(lost));
       EXPECT_EQ(fault.count, 1U);
-      EXPECT_NEAR(fault.time_s * 300.0, static_cast<double>(tick), 16.0);
+      EXPECT_NEAR(fault.time_s * 300.0, static_cast<double>(tick), 4.0);
       EXPECT_TRUE(wheelsets.log().spoilt(fault.kind, FaultChannel::kAll, tick + kDelay / 2));
       EXPECT_TRUE(wheelsets.log().spoilt(fault.kind, FaultChannel::kAll, tick - 1));
       EXPECT_FALSE(wheelsets.log().spoilt(fault.kind, FaultChannel::kAll, tick - 600));

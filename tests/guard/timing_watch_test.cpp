@@ -96,11 +96,13 @@ TEST(TimingWatch, NamesTheWheelsetThatIsOutOfStep) {
     one.show(12, {});
     one.show(5, wheelset1_late(late_s));
     expect_only(one, {FaultKind::kTimingStep, FaultChannel::kWheelset1, late_s}, 2e-6);
+    EXPECT_NEAR(one.watch().delay_s(), kUsualS - late_s, 2e-6) << "by what came since";
     EXPECT_NEAR(one.faults()[0].time_s, 12 * kBlock / kTimingRateHz, 0.1);
     Blocks two;
     two.show(12, {});
-    two.show(5, wheelset2_late(late_s));
+    two.show(4, wheelset2_late(late_s));
     expect_only(two, {FaultKind::kTimingStep, FaultChannel::kWheelset2, late_s}, 2e-6);
+    EXPECT_NEAR(two.watch().delay_s(), kUsualS + late_s, 2e-6) << "three blocks are left";
   }
 }
 
