@@ -423,6 +423,15 @@ TEST(SpectralGuard, KnowsWhatIsABurstFromFiveBlocksOn) {
   EXPECT_NE(track.find(FaultKind::kNoiseBurst), nullptr);
 }
 
+// A burst of some blocks moves the ratio of the wheelsets' powers as a change of gain would.
+TEST(SpectralGuard, ALongBurstIsNoChangeOfGain) {
+  Track track{GuardConfig{}};
+  track.change = noisy(1, 0.5, 150.0, 205.0);
+  track.run(300.0);
+  EXPECT_NE(track.find(FaultKind::kNoiseBurst), nullptr);
+  EXPECT_EQ(track.find(FaultKind::kGainChange), nullptr);
+}
+
 // 3.5 times the declared power, of the frame and of both wheelsets together.
 TEST(SpectralGuard, ABurstIsAboveWhatIsDeclared) {
   GuardConfig frame;

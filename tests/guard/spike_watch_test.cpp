@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace dampline {
@@ -136,6 +137,25 @@ TEST(SpikeWatch, ForgetsAnOpenStrikeWhereSamplesAreMissing) {
   watch.restart();
   go(300, 500);
   EXPECT_FALSE(watch.next(strike));
+}
+
+// Five samples on either side are looked at: of what a gap cut off there are too few.
+TEST(SpikeWatch, JudgesAStrikeFromTheSixthSampleAfterAGapOn) {
+  for (const auto& [before, judged] : {std::pair{4, false}, std::pair{5, true}}) {
+    SpikeWatch watch{kSegment};
+    std::int64_t tick = 0;
+    const auto go = [&](std::int64_t count, std::int64_t added) {
+      for (std::int64_t i = 0; i < count; ++i, ++tick)
+        watch.update(tick, 500 + added + (tick % 2 == 0 ? 1 : -1));
+    };
+    go(kSegment, 0);
+    watch.restart();
+    go(before, 0);
+    go(1, 60);
+    go(kSegment, 0);
+    Strike strike;
+    EXPECT_EQ(watch.next(strike), judged) << before;
+  }
 }
 
 Regularity regularity_of(const std::vector<std::int64_t>& intervals) {
