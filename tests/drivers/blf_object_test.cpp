@@ -151,6 +151,7 @@ TEST(BlfObject, ReadsCanFd) {
   EXPECT_EQ(read_object(bytes_of({101, fd_message_64(1, 1, 0x1000 | 0x4000)})).frame.fd_flags, 2);
   EXPECT_TRUE(read_object(bytes_of({101, fd_message_64(1, 0, 0x10)})).frame.remote);
   EXPECT_FALSE(read_object(bytes_of({101, fd_message_64(1, 0, 0)})).frame.remote);
+  EXPECT_FALSE(read_object(bytes_of({101, fd_message_64(1, 0, 0x2000)})).frame.fd);
 }
 
 TEST(BlfObject, IsBadWhereItIsTooShortForItsType) {
@@ -304,6 +305,37 @@ TEST(BlfFile, PassesOverOtherObjectsOfAnySizeAndEightBytesOfPadding) {
     const FileFrames outside = blf_file(blf_header() + zeros + plain_container(frame_at(1)));
     EXPECT_EQ(outside.frames.size(), good ? 1U : 0U) << padding;
   }
+}
+
+// 193 bytes, of which 192 are looked at.
+TEST(BlfFile, IsWholeWhereItsLastObjectIs) {
+  const std::string last = bytes_of({65, std::string(161, 'x')});
+  EXPECT_FALSE(blf_file(blf_header() + plain_container(frame_at(1) + last)).health.truncated);
+  const FileFrames cut =
+      blf_file(blf_header() + plain_container((frame_at(1) + last).substr(0, 48 + 192)));
+  EXPECT_EQ(cut.frames.size(), 1U);
+  EXPECT_EQ(cut.reason, Errc::kEndOfStream);
+  EXPECT_TRUE(cut.health.truncated) << "its container is whole, it is not";
+}
+
+TEST(BlfFile, ReadsObjectsWithoutAContainerBehindThoseInOne) {
+  const std::string zlib =
+      test::content_of(std::string{DAMPLINE_SOURCE_DIR} + "/tests/fuzz/corpus/blf/zlib").substr(1);
+  ASSERT_EQ(blf_file(zlib).frames.size(), 5U);
+  const FileFrames out = blf_file(zlib + frame_at(100'000'000'000));
+  EXPECT_EQ(out.frames.size(), 6U) << out.error;
+  EXPECT_EQ(out.reason, Errc::kEndOfStream);
+}
+
+// What is no object counts once, however often it looks like one.
+TEST(BlfFile, CountsEachPlaceWithoutAnObject) {
+  std::string broken;
+  for (int i = 0; i < 10; ++i) broken += "LOBJ" + std::string(20, '\0') + "xx";
+  std::string content;
+  for (std::uint64_t i = 0; i < 3; ++i) content += frame_at(i) + (i < 2 ? broken : "");
+  const FileFrames out = blf_file(blf_header() + plain_container(content), {}, true);
+  EXPECT_EQ(out.frames.size(), 3U);
+  EXPECT_EQ(out.health.malformed, 2U);
 }
 
 TEST(BlfFile, DeliversTheChannelsThatWereAskedFor) {
