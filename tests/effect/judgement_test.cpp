@@ -51,6 +51,66 @@ TEST(Judgement, AnImpossibleLawExplainsNothing) {
   EXPECT_FALSE(is_possible(e));
 }
 
+/// What is concluded of an error so many times the floor.
+Conclusion concluded(double ratio, std::uint64_t impacts, bool step) {
+  Explanation e = explained_by_one_effect(0.5);
+  if (!step) e.step_count = 0;
+  e.final_coulomb_n = {8000.0, 40.0};
+  e.final_stiffness_npm = {5e6, 2e4};
+  e.final.held_out_nmse = 0.01 * ratio;
+  e.floor_nmse = ratio > 0.0 ? 0.01 : 0.0;
+  conclude(impacts, e);
+  return e.conclusion;
+}
+
+// A quarter more than the floor without an effect, half of it with one, or among ten impacts.
+TEST(Conclusion, IsOfTheErrorOverItsFloor) {
+  EXPECT_EQ(concluded(1.24, 0, false), Conclusion::kComplete);
+  EXPECT_EQ(concluded(1.26, 0, false), Conclusion::kUnexplained);
+  EXPECT_EQ(concluded(1.26, 9, false), Conclusion::kUnexplained);
+  EXPECT_EQ(concluded(1.49, 10, false), Conclusion::kComplete);
+  EXPECT_EQ(concluded(1.51, 10, false), Conclusion::kUnexplained);
+  EXPECT_EQ(concluded(1.49, 0, true), Conclusion::kExplained);
+  EXPECT_EQ(concluded(1.51, 0, true), Conclusion::kPartlyExplained);
+  EXPECT_EQ(concluded(0.0, 0, false), Conclusion::kComplete) << "without a floor";
+}
+
+TEST(Conclusion, HasANameForEach) {
+  EXPECT_STREQ(name_of(Conclusion::kNotReady), "not_ready");
+  EXPECT_STREQ(name_of(Conclusion::kComplete), "complete");
+  EXPECT_STREQ(name_of(Conclusion::kExplained), "explained");
+  EXPECT_STREQ(name_of(Conclusion::kPartlyExplained), "partly_explained");
+  EXPECT_STREQ(name_of(Conclusion::kUnexplained), "unexplained");
+}
+
+// Restated with the weights of the final model, where there is one.
+TEST(Conclusion, ComparesWithTheBaseByTheSameWeights) {
+  Explanation e = explained_by_one_effect(0.5);
+  EXPECT_EQ(base_error(e), 0.2);
+  e.base_restated_nmse = 0.3;
+  EXPECT_EQ(base_error(e), 0.3);
+  e.step_count = 0;
+  EXPECT_EQ(base_error(e), 0.2);
+}
+
+TEST(Conclusion, WithoutStepsIsTheBase) {
+  Explanation e = explained_by_one_effect(0.5);
+  e.base_model.count = 1;
+  e.model.count = 3;
+  e.base_weight.fill(2.0);
+  e.base_floor_nmse = 0.07;
+  e.base_coulomb_n = {7000.0, 30.0};
+  e.base_stiffness_npm = {4e6, 1e4};
+  drop_steps(e);
+  EXPECT_EQ(e.step_count, 0U);
+  EXPECT_EQ(e.model.count, 1U);
+  EXPECT_EQ(e.final.held_out_nmse, 0.2);
+  EXPECT_EQ(e.weight[2], 2.0);
+  EXPECT_EQ(e.floor_nmse, 0.07);
+  EXPECT_EQ(e.final_coulomb_n.value, 7000.0);
+  EXPECT_EQ(e.final_stiffness_npm.value, 4e6);
+}
+
 TEST(Judgement, LetsTheDiagnosisGoOnWhereAFaultThatPassesWasLeftOut) {
   for (const FaultKind kind : kPassing) {
     FaultView faults = with(kind, FaultChannel::kFrame);
@@ -92,6 +152,11 @@ TEST(Judgement, PrefersAParameterThatChangedWhereItExplainsMore) {
   drift.gain = 0.4;
   EXPECT_TRUE(drift_explains_more(drift, explained_by_one_effect(0.3)));
   EXPECT_FALSE(drift_explains_more(drift, explained_by_one_effect(0.39)));
+  EXPECT_TRUE(drift_explains_more(drift, explained_by_one_effect(0.379))) << "by two parts of 100";
+  EXPECT_FALSE(drift_explains_more(drift, explained_by_one_effect(0.381)));
+  Explanation nothing = explained_by_one_effect(0.9);
+  nothing.step_count = 0;
+  EXPECT_TRUE(drift_explains_more(drift, nothing)) << "where no effect explains anything";
 }
 
 }  // namespace
