@@ -13,8 +13,8 @@
 namespace dampline {
 namespace {
 
-constexpr double kBeta = 280.0;
-constexpr double kRateHz = 300.0;
+constexpr double kDriftBeta = 280.0;
+constexpr double kDriftRateHz = 300.0;
 const DriftBins drift_bins{kDefaultCurveNodesMps};
 
 TEST(DriftBins, HalveTheFirstSegmentAndGoOnWithoutEnd) {
@@ -108,10 +108,10 @@ double broken_line(double v, std::size_t segments) {
 TEST(FitKnownInput, FindsEveryBrokenLineExactly) {
   for (const std::size_t segments : {2U, 3U, 5U, 8U}) {
     const Curve deflection = [](double v) { return 1e-3 * std::sin(400.0 * v); };
-    const DriftSums sums =
-        grid([](double v) { return std::exp(-40.0 * std::abs(v)); }, deflection,
-             [&](double v) { return -0.5 * (broken_line(v, segments) + kBeta * deflection(v)); });
-    const DriftFit fit = fit_known_input(sums, drift_bins, kBeta, segments);
+    const DriftSums sums = grid(
+        [](double v) { return std::exp(-40.0 * std::abs(v)); }, deflection,
+        [&](double v) { return -0.5 * (broken_line(v, segments) + kDriftBeta * deflection(v)); });
+    const DriftFit fit = fit_known_input(sums, drift_bins, kDriftBeta, segments);
     ASSERT_TRUE(fit.ok);
     EXPECT_EQ(fit.segments, segments);
     for (std::size_t node = 0; node <= segments; ++node) {
@@ -130,19 +130,19 @@ TEST(FitKnownInput, LevelAndOffsetAreThoseBeyondTheFirstSegment) {
              if (std::abs(v) < 3.0e-3) return 7.0;
              return -0.5 * ((v < 0.0 ? -0.45 : 0.45) + 0.06);
            });
-  const DriftFit fit = fit_known_input(sums, drift_bins, kBeta, 4);
+  const DriftFit fit = fit_known_input(sums, drift_bins, kDriftBeta, 4);
   ASSERT_TRUE(fit.ok);
   EXPECT_NEAR(fit.level_mps2, 0.45, 1e-9);
   EXPECT_NEAR(fit.offset_mps2, 0.06, 1e-9);
-  EXPECT_FALSE(fit_known_input(sums, drift_bins, kBeta, 0).ok);
-  EXPECT_FALSE(fit_known_input(DriftSums{}, drift_bins, kBeta, 4).ok);
+  EXPECT_FALSE(fit_known_input(sums, drift_bins, kDriftBeta, 0).ok);
+  EXPECT_FALSE(fit_known_input(DriftSums{}, drift_bins, kDriftBeta, 4).ok);
 }
 
 /// Of white input of level D the stationary density is exp(-2 / D times the integral of the force).
-constexpr double kLevel = 5.0e-3;
+constexpr double kDriftLevel = 5.0e-3;
 double stationary(double v, double level_mps2, double offset_mps2, double per_velocity) {
   const double work = level_mps2 * std::abs(v) + offset_mps2 * v + 0.5 * per_velocity * v * v;
-  return std::exp(-2.0 / kLevel * work);
+  return std::exp(-2.0 / kDriftLevel * work);
 }
 
 TEST(FitWeakForm, FindsTheForceOfAStationaryDensity) {
@@ -151,7 +151,8 @@ TEST(FitWeakForm, FindsTheForceOfAStationaryDensity) {
     for (const std::size_t segments : {3U, 8U}) {
       const DriftSums sums = grid([&](double v) { return stationary(v, level, offset, viscous); },
                                   [](double) { return 0.0; }, [](double) { return 0.0; });
-      const DriftFit fit = fit_weak_form(sums, drift_bins, kBeta, kLevel, kRateHz, segments);
+      const DriftFit fit =
+          fit_weak_form(sums, drift_bins, kDriftBeta, kDriftLevel, kDriftRateHz, segments);
       ASSERT_TRUE(fit.ok);
       for (std::size_t node = 0; node <= segments; ++node) {
         const double speed = node == 0 ? 0.0 : kDefaultCurveNodesMps[node - 1];
@@ -169,13 +170,13 @@ TEST(FitWeakForm, FindsTheForceOfAStationaryDensity) {
 TEST(FitWeakForm, KnowsTheSpring) {
   constexpr double kSeconds = 0.012;
   const DriftSums sums =
-      grid([](double v) { return stationary(v, 0.3, 0.0, 0.7 * kBeta * kSeconds); },
+      grid([](double v) { return stationary(v, 0.3, 0.0, 0.7 * kDriftBeta * kSeconds); },
            [](double v) { return 0.7 * kSeconds * v; }, [](double) { return 0.0; });
-  const DriftFit fit = fit_weak_form(sums, drift_bins, kBeta, kLevel, kRateHz, 8);
+  const DriftFit fit = fit_weak_form(sums, drift_bins, kDriftBeta, kDriftLevel, kDriftRateHz, 8);
   ASSERT_TRUE(fit.ok);
   EXPECT_NEAR(fit.level_mps2, 0.3, 2e-3);
   for (const double alpha : fit.alpha_mps2[1]) EXPECT_NEAR(alpha, 0.3, 0.01);
-  EXPECT_FALSE(fit_weak_form(sums, drift_bins, kBeta, kLevel, kRateHz, 0).ok);
+  EXPECT_FALSE(fit_weak_form(sums, drift_bins, kDriftBeta, kDriftLevel, kDriftRateHz, 0).ok);
 }
 
 // A curve that bends costs: of few samples the nodes lie nearer to a line than of many.
@@ -185,11 +186,11 @@ TEST(FitWeakForm, ExpectsLittleBend) {
         [](double v) {
           const double speed = std::abs(v);
           const double work = 0.3 * speed + (speed > 8e-3 ? 30.0 * std::pow(speed - 8e-3, 2) : 0.0);
-          return std::exp(-2.0 / kLevel * work);
+          return std::exp(-2.0 / kDriftLevel * work);
         },
         [](double) { return 0.0; }, [](double) { return 0.0; });
     sums.scale(factor / sums.count());
-    const DriftFit fit = fit_weak_form(sums, drift_bins, kBeta, kLevel, kRateHz, 5);
+    const DriftFit fit = fit_weak_form(sums, drift_bins, kDriftBeta, kDriftLevel, kDriftRateHz, 5);
     EXPECT_TRUE(fit.ok);
     const auto& alpha = fit.alpha_mps2[1];
     return (alpha[5] - alpha[3]) / 6.5e-3 - (alpha[3] - alpha[1]) / 5e-3;

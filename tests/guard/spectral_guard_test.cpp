@@ -324,6 +324,20 @@ TEST(SpectralGuard, NoiseAmongImpactsIsNotJudged) {
   }
 }
 
+// That of both wheelsets together is known where neither was struck; else the frame's stands for
+// it.
+TEST(SpectralGuard, NoiseOfWheelsetsIsNotMeasuredAmongImpacts) {
+  for (const std::size_t struck : {0U, 1U, 2U}) {
+    Track track;
+    track.change = [&](std::int64_t tick, Track::Values&) {
+      if (tick % 600 == 0) ++track.inputs.impacts[struck];
+    };
+    track.run(120.0);
+    for (const std::size_t c : {1U, 2U})
+      EXPECT_EQ(track.guard().noise_mps2(c) == track.guard().noise_mps2(0), struck > 0) << struck;
+  }
+}
+
 // Six times the usual power.
 TEST(SpectralGuard, NamesABurstAndItsBlocks) {
   for (const auto& [channel, size, named] :
@@ -446,6 +460,15 @@ TEST(SpectralGuard, ABurstIsAboveWhatIsDeclared) {
     EXPECT_TRUE(bursts(1, 0.35, wheelset)) << declared;
     EXPECT_TRUE(bursts(0, 0.15, wheelset)) << declared;
   }
+}
+
+TEST(SpectralGuard, OfNothingTheFrameFollowsNothing) {
+  Track track;
+  const FrameFollow follow = track.guard().frame_follow();
+  for (const double figure : {follow.usual, follow.step, follow.step_significance, follow.trend,
+                              follow.trend_significance})
+    EXPECT_EQ(figure, 0.0);
+  EXPECT_EQ(track.guard().noise_mps2(0), 0.0);
 }
 
 TEST(SpectralGuard, MeasuresAStepOfWhatTheFrameFollows) {

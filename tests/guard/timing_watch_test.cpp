@@ -266,6 +266,23 @@ TEST(TimingWatch, WithoutLagsASuddenChangeIsAFault) {
   }
 }
 
+// The middle of three counts: one segment that is off by itself makes no sudden change.
+TEST(TimingWatch, ASegmentThatIsOffTellsNothing) {
+  for (const double off_s : {0.002, -0.002}) {
+    Blocks blocks;
+    const std::int64_t from = 12 * kBlock - 1000;
+    blocks.set_segments([&](std::int64_t tick, const Shown&) {
+      const double ramp =
+          std::clamp(0.002 / (9.0 * kHop) * static_cast<double>(tick - from), 0.0, 0.002);
+      return kUsualS + ramp + (tick / kHop % 12 == 5 ? off_s : 0.0);
+    });
+    blocks.show(12, {.has_lag = false});
+    blocks.show(6, {.delay_s = kUsualS + 0.002, .has_lag = false});
+    EXPECT_TRUE(blocks.faults().empty()) << off_s;
+    EXPECT_EQ(blocks.speed_changes(), 1U);
+  }
+}
+
 TEST(TimingWatch, ADelayAnotherByAFifthIsAnotherSpeedAtOnce) {
   for (const auto& [factor, other] : {std::pair{1.19, false}, std::pair{1.21, true},
                                       std::pair{0.81, false}, std::pair{0.79, true}}) {
