@@ -371,6 +371,16 @@ TEST(TimingWatch, TheWheelsetsOwnJumpTellsWhereSegmentsDoNot) {
   }
 }
 
+TEST(TimingWatch, MayDiscardAllSegments) {
+  Blocks blocks;
+  blocks.set_segments([](std::int64_t, const Shown& shown) { return shown.delay_s; });
+  blocks.show(3, {});
+  blocks.watch().discard_segments(0);
+  blocks.watch().discard_segments(0);
+  blocks.show(12, {.has_lag = false});
+  EXPECT_TRUE(blocks.faults().empty());
+}
+
 TEST(TimingWatch, DiscardsSegmentsFromATickOn) {
   Blocks blocks;
   const auto late = [](std::int64_t tick) {
