@@ -55,6 +55,21 @@ TEST(GuardCodes, TakesAJumpOfAllChannelsAlikeForTheTrack) {
   EXPECT_EQ(faults_after({2.0, 2.0, -2.0}), 3U);
 }
 
+// The channels of a curve are some three seconds apart at most.
+TEST(GuardCodes, JumpsTogetherAreWithinSomeThreeSeconds) {
+  for (const auto& [later_s, faults] : {std::pair{2.5, 0U}, std::pair{4.0, 3U}}) {
+    Codes codes;
+    codes.run(24'000, [later = 9000 + std::llround(later_s * 300.0)](Sample& sample) {
+      if (sample.tick >= 9000) sample.accel_mps2[0] += 0.6;
+      if (sample.tick >= later) {
+        sample.accel_mps2[1] += 0.6;
+        sample.accel_mps2[2] += 0.6;
+      }
+    });
+    EXPECT_EQ(codes.faults().size(), faults) << later_s;
+  }
+}
+
 TEST(GuardCodes, TakesTheEndOfACurveForTheTrackToo) {
   Codes codes;
   for (const double cant_mps2 : {0.0, 0.6, 0.0, -0.6})
