@@ -222,6 +222,15 @@ TEST(PeriodMeter, AfterARestartNeighboursAreNew) {
   EXPECT_EQ(meter.period().state, PeriodState::kNotEnough);
 }
 
+TEST(PeriodMeter, FindsAToneInAnyUnit) {
+  for (const double unit : {1e-14, 1.0, 1e9}) {
+    PeriodMeter<64> meter{0.01, 1};
+    for (int i = 0; i < 6000; ++i) meter.update(unit * std::sin(2.0 * std::numbers::pi * i / 10.0));
+    EXPECT_EQ(meter.period().state, PeriodState::kFound) << unit;
+    EXPECT_NEAR(meter.period().period_s, 0.1, 1e-4);
+  }
+}
+
 // Of a lag that a gap cuts off nothing is left in the next one, which would hide a small tone.
 TEST(PeriodMeter, SumsNoLagAcrossAGap) {
   using Small = PeriodMeter<64>;

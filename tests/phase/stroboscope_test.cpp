@@ -62,6 +62,10 @@ TEST(Stroboscope, StartsAfreshAfterWhatIsNoNumberAndAfterTimeThatStandsStill) {
   EXPECT_TRUE(s.update(1.1, {}).taken);
 }
 
+TEST(MovingSigmas, LetOneStuckPointIn26MillionPass) {
+  EXPECT_NEAR(std::erfc(kMovingSigmas / std::sqrt(2.0)) * 26e6, 1.0, 0.02);
+}
+
 TEST(Stroboscope, RefusesWhatIsNoPeriod) {
   EXPECT_FALSE(Stroboscope::make({0.0, 0.0, 1}, 0.1).ok());
   EXPECT_FALSE(Stroboscope::make({std::numeric_limits<double>::infinity(), 0.0, 1}, 0.1).ok());
