@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The floor that a surrogate gives against clean records, whose error is the floor.
-#include "dampline/effect/surrogate.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
 #include "dampline/effect/explainer.hpp"
+#include "dampline/effect/surrogate.hpp"
 #include "dampline/motion/frame_noise.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/simulation.hpp"
