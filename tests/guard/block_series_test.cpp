@@ -46,6 +46,10 @@ TEST(BlockSeries, ForgetsTheOldestByNumberOrByTick) {
   EXPECT_EQ(series[0], 9.0);
   series.drop(5);
   EXPECT_EQ(series.size(), 0U);
+  BlockSeries full;
+  for (int i = 0; i < 60; ++i) full.add(i, i);
+  full.drop_before(1000);
+  EXPECT_EQ(full.size(), 0U) << "all of them";
 }
 
 TEST(BlockSeries, OfNothingIsNothing) {
