@@ -40,6 +40,7 @@ TEST(CandumpScreen, ReadsATimeOfDayAsUtc) {
   EXPECT_EQ(time_of("2020-09-13 12:26:40.123456"), 1'600'000'000'123'456'000);
   EXPECT_EQ(time_of("2024-02-29 23:59:59.999999"), 1'709'251'199'999'999'000);
   EXPECT_EQ(time_of("2200-12-31 00:00:00.0"), 7'289'568'000'000'000'000);
+  EXPECT_EQ(time_of("2020-09-13 12:26:40"), 1'600'000'000'000'000'000) << "to the second";
   EXPECT_EQ(time_of("2016-12-31 23:59:60.500000"), 1'483'228'800'500'000'000) << "a leap second";
   EXPECT_EQ(screen_line("(2020-09-13 12:26:40.1) can0 123 [0]").clock, RecordClock::kLocal);
 }
