@@ -147,6 +147,7 @@ TEST(CandumpLine, ReadsWhatCanUtilsAllows) {
   EXPECT_EQ(parse("(1.000000) can0 123#").frame.length, 0);
   EXPECT_EQ(parse("(1.000000) can0 1aB#fF").frame.data[0], 0xFF);
   EXPECT_EQ(parse("(1.000000) can0 123#11.22.33").frame.length, 3);
+  EXPECT_EQ(parse("(1.000000) can012345678901 123#").interface, "can012345678901");
   EXPECT_EQ(parse("(1.000000) can0 123#1122334455667788_C").frame.length, 8);
 }
 
