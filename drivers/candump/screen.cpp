@@ -64,7 +64,6 @@ FrameLineParser::Found CandumpScreen::take_time(std::string_view& rest, CanFrame
   if (!time_ns) return bad("seconds, or a date and a time of day", text);
   const bool absolute = text.find('.') >= kAbsoluteDigits;
   clock_ = date ? RecordClock::kLocal : absolute ? RecordClock::kUtc : RecordClock::kRelative;
-  timed_ = true;
   const bool add = deltas_ && !date && !absolute;
   frame.time_ns = add ? later(last_ns_, *time_ns) : *time_ns;
   last_ns_ = frame.time_ns;

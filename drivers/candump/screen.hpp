@@ -32,7 +32,6 @@ class CandumpScreen final : public FrameLineParser {
   bool deltas_;
   std::optional<UntimedFrames> untimed_;
   RecordClock clock_{RecordClock::kRelative};
-  bool timed_{false};
   bool stamped_{false};
   std::int64_t last_ns_{0};
   std::int64_t instants_{0};  // of untimed frames

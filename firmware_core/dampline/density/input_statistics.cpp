@@ -137,7 +137,12 @@ BlockPowers::BlockPowers(double memory_blocks) noexcept : rings_{memory_blocks >
 
 void BlockPowers::close_block() noexcept {
   if (open_.count == 0.0) return;
-  if (++blocks_ < blocks_per_slot_) return;
+  ++blocks_;
+  end_slot();
+}
+
+void BlockPowers::end_slot() noexcept {
+  if (blocks_ < blocks_per_slot_) return;
   push(open_);
   open_ = {};
   blocks_ = 0;
@@ -154,7 +159,10 @@ void BlockPowers::push(const Power& slot) noexcept {
 }
 
 void BlockPowers::coarsen() noexcept {
-  if (size_ % 2 == 1) open_.add(slots_[--size_]);
+  if (size_ % 2 == 1) {
+    open_.add(slots_[--size_]);
+    blocks_ += blocks_per_slot_;
+  }
   size_ = join_neighbours(slots_, size_, [](Power& slot, const Power& next) { slot.add(next); });
   blocks_per_slot_ *= 2;
 }
@@ -171,6 +179,8 @@ void BlockPowers::append(const BlockPowers& other) noexcept {
   }
   for (std::size_t i = 0; i < tail.size_; ++i) push(tail.slots_[(tail.oldest_ + i) % kSlots]);
   open_.add(tail.open_);
+  blocks_ += tail.blocks_;
+  end_slot();
 }
 
 BlockPowers::Change BlockPowers::change_of(double Power::*power) const noexcept {

@@ -123,6 +123,7 @@ class BlockPowers {
     void add(const Power& other) noexcept;
   };
   void push(const Power& slot) noexcept;
+  void end_slot() noexcept;
   void coarsen() noexcept;
   [[nodiscard]] Change change_of(double Power::*power) const noexcept;
 
