@@ -87,11 +87,6 @@ void LagTracker::learn(std::size_t k, const Bin& bin) noexcept {
   reference_[k] = kReferenceKept * reference_[k] + turned(k, lag_s_, bin.cross);
 }
 
-BlockSurvey::Band BlockSurvey::band(double low_hz, double high_hz) const noexcept {
-  const auto last = static_cast<std::size_t>(std::floor(high_hz / bin_hz_));
-  return {static_cast<std::size_t>(std::ceil(low_hz / bin_hz_)), std::min(last, kSpectrumBins - 1)};
-}
-
 // Bands in Hz for 300 samples a second; those near half the rate move with it.
 BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alias) noexcept
     : rate_hz_{sample_rate_hz},

@@ -115,11 +115,6 @@ class BlockSurvey {
  private:
   static constexpr std::size_t kSlice = 16;
   enum class Stage : std::uint8_t { kDone, kPower, kLoad, kTransform, kPeak, kPhase, kReference };
-  struct Band {
-    std::size_t first, last;
-    [[nodiscard]] bool holds(std::size_t k) const noexcept { return k >= first && k <= last; }
-    [[nodiscard]] double bins() const noexcept { return static_cast<double>(last - first + 1); }
-  };
   struct Sums {
     double coherent{0.0};
     double phase{0.0}, phase_weight{0.0};
@@ -142,12 +137,14 @@ class BlockSurvey {
   void conclude_noise(double density) noexcept;
   void conclude_lag() noexcept;
   [[nodiscard]] LagTracker::Bin lag_bin(std::size_t which, std::size_t k) const noexcept;
-  [[nodiscard]] Band band(double low_hz, double high_hz) const noexcept;
+  [[nodiscard]] SpectrumBand band(double low_hz, double high_hz) const noexcept {
+    return SpectrumBand::between(low_hz, high_hz, rate_hz_);
+  }
   [[nodiscard]] double hz(std::size_t k) const noexcept { return static_cast<double>(k) * bin_hz_; }
 
   double rate_hz_;
   double bin_hz_;
-  Band shared_, follow_, fast_, lag_, middle_, noise_, incoherent_, edge_;
+  SpectrumBand shared_, follow_, fast_, lag_, middle_, noise_, incoherent_, edge_;
   std::array<double, kSpectrumBins> alias_shape_{};
   const SpectrumSums* block_{nullptr};
   Stage stage_{Stage::kDone};

@@ -15,6 +15,13 @@ constexpr std::size_t kSumSlice = 16;
 
 }  // namespace
 
+SpectrumBand SpectrumBand::between(double low_hz, double high_hz, double sample_rate_hz) noexcept {
+  const double bin_hz = sample_rate_hz / static_cast<double>(Fourier512::kSize);
+  const auto first = static_cast<std::size_t>(std::ceil(low_hz / bin_hz));
+  const auto last = static_cast<std::size_t>(std::floor(high_hz / bin_hz));
+  return {first, std::max(std::min(last, kSpectrumBins - 1), first - 1)};
+}
+
 void SpectrumSums::clear() noexcept {
   for (Real* real : {&frame, &wheelset1, &wheelset2, &delayed1, &mean}) real->fill(0.0);
   for (Cross* cross : {&wheelsets, &aligned, frame_to.data(), &frame_to[1]}) cross->fill({});

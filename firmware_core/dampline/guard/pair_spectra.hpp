@@ -12,6 +12,16 @@ namespace dampline {
 
 inline constexpr std::size_t kSpectrumBins = Fourier512::kSize / 2;
 
+/// Bins from `first` to `last`; none where that is the one before it.
+struct SpectrumBand {
+  std::size_t first{0}, last{0};
+  /// Those between two frequencies above 0.
+  [[nodiscard]] static SpectrumBand between(double low_hz, double high_hz,
+                                            double sample_rate_hz) noexcept;
+  [[nodiscard]] bool holds(std::size_t k) const noexcept { return k >= first && k <= last; }
+  [[nodiscard]] double bins() const noexcept { return static_cast<double>(last - first + 1); }
+};
+
 /// Sums over the segments of a block, by bin. Channel 1 is also seen delayed by a whole number of
 /// samples, so that it stands beside channel 2. z = (a1 + a2) / 2.
 struct SpectrumSums {

@@ -23,15 +23,15 @@ constexpr std::size_t kFarBeside = 5;
 
 PlaceWatch::PlaceWatch(double sample_rate_hz) noexcept
     : bin_hz_{sample_rate_hz / static_cast<double>(Fourier512::kSize)},
-      below_{range(1.1, 1.6, kMostBins)},
-      pitch_{range(3.5, 7.6, kMostBins)},
-      mounts_{range(15.0, 0.42 * sample_rate_hz, kMostBands * kBandBins)} {}
-
-PlaceWatch::Range PlaceWatch::range(double low_hz, double high_hz,
-                                    std::size_t most) const noexcept {
-  const auto first = static_cast<std::size_t>(std::ceil(low_hz / bin_hz_));
-  const auto last = static_cast<std::size_t>(std::floor(high_hz / bin_hz_));
-  return {first, std::min({last + 1 - std::min(first, last + 1), most, kSpectrumBins - first})};
+      below_{SpectrumBand::between(1.1, 1.6, sample_rate_hz)},
+      pitch_{SpectrumBand::between(3.5, 7.6, sample_rate_hz)},
+      mounts_{SpectrumBand::between(15.0, 0.42 * sample_rate_hz, sample_rate_hz)} {
+  const auto hold = [](SpectrumBand& band, std::size_t most) {
+    band.last = std::min(band.last, band.first + most - 1);
+  };
+  hold(below_, kMostBins);
+  hold(pitch_, kMostBins);
+  hold(mounts_, kMostBands * kBandBins);
 }
 
 void PlaceWatch::start(const SpectrumSums& sums, const BlockFigures& figures) noexcept {
@@ -41,7 +41,7 @@ void PlaceWatch::start(const SpectrumSums& sums, const BlockFigures& figures) no
   frame_ = wheelsets_ = wheelset1_ = wheelset2_ = {};
   ++blocks_;
   const double white = figures.noise[0] + 0.25 * kFollows2 * (figures.noise[1] + figures.noise[2]);
-  noise_ = kPlacesKept * noise_ + white * static_cast<double>(below_.count);
+  noise_ = kPlacesKept * noise_ + white * below_.bins();
 }
 
 bool PlaceWatch::advance(FaultLog& log) noexcept {
@@ -81,7 +81,7 @@ void PlaceWatch::add(std::size_t k, Bin& bin) const noexcept {
 
 // The shape of a channel over another, by bands; a peak of it is narrow.
 void PlaceWatch::judge_mounts(FaultLog& log) noexcept {
-  const std::size_t bands = mounts_.count / kBandBins;
+  const std::size_t bands = (mounts_.last - mounts_.first + 1) / kBandBins;
   const std::array<std::array<const Bands*, 2>, kChannels> pairs{
       {{&frame_, &wheelsets_}, {&wheelset1_, &wheelset2_}, {&wheelset2_, &wheelset1_}}};
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -115,8 +115,8 @@ Misplacement PlaceWatch::misplacement() const noexcept {
   Misplacement out;
   double power = 0.0;
   double foreign = -kNoiseOfPlaces * noise_;
-  for (std::size_t i = 0; i < below_.count; ++i) {
-    const Bin& b = below_bins_[i];
+  for (std::size_t k = below_.first; k <= below_.last; ++k) {
+    const Bin& b = below_bins_[k - below_.first];
     power += b.frame;
     foreign += b.frame - std::norm(b.mean_frame) / (b.mean + kTinyPower);
   }
@@ -127,8 +127,8 @@ Misplacement PlaceWatch::misplacement() const noexcept {
   double left = 0.0;
   double first = 0.0;
   double second = 0.0;
-  for (std::size_t i = 0; i < pitch_.count; ++i) {
-    const Bin& b = pitch_bins_[i];
+  for (std::size_t k = pitch_.first; k <= pitch_.last; ++k) {
+    const Bin& b = pitch_bins_[k - pitch_.first];
     const Complex cross =
         b.difference_frame - std::conj(b.mean_difference) * b.mean_frame / (b.mean + kTinyPower);
     const double own = b.difference - std::norm(b.mean_difference) / (b.mean + kTinyPower);

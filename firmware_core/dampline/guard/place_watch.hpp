@@ -42,27 +42,20 @@ class PlaceWatch {
     double wheelset1{0.0}, wheelset2{0.0};
     Complex mean_frame{}, difference_frame{}, mean_difference{};
   };
-  struct Range {
-    std::size_t first{0}, count{0};
-    [[nodiscard]] bool holds(std::size_t k) const noexcept {
-      return k >= first && k < first + count;
-    }
-  };
   using Bands = std::array<double, kMostBands>;
   struct Ringing {
     std::size_t band{0};
     int blocks{0};  // in a row
   };
 
-  [[nodiscard]] Range range(double low_hz, double high_hz, std::size_t most) const noexcept;
   void add(std::size_t k) noexcept;
   void add(std::size_t k, Bin& bin) const noexcept;
   void judge_mounts(FaultLog& log) noexcept;
 
   double bin_hz_;
-  Range below_;  // the resonance
-  Range pitch_;
-  Range mounts_;
+  SpectrumBand below_;  // the resonance
+  SpectrumBand pitch_;
+  SpectrumBand mounts_;
   std::array<Bin, kMostBins> below_bins_{};
   std::array<Bin, kMostBins> pitch_bins_{};
   double noise_{0.0};  // of the frame's sums below the resonance
