@@ -10,9 +10,9 @@
 namespace dampline {
 
 /// What the guards found wrong with the data themselves, so that it is never taken for a property
-/// of the suspension. Plain data; a list of faults has one entry for each kind and channel, at most
-/// kFaultKinds * kFaultChannels. How each kind is found: the room
-/// guard/; what the names mean to a user: docs/faults.md; thresholds: docs/constants.md.
+/// of the suspension. Plain data; a list of faults has one entry for each kind and channel. How
+/// each kind is found: the room guard/; what the names mean to a user: docs/faults.md; thresholds:
+/// docs/constants.md.
 
 /// What can be wrong with the data before they say anything about the suspension.
 enum class FaultKind : std::uint8_t {
@@ -43,6 +43,8 @@ inline constexpr std::size_t kFaultKinds = 21;
 /// Where a fault is. What compares the two wheelsets cannot tell which of them it is.
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
 inline constexpr std::size_t kFaultChannels = 5;
+/// Of a list: half of the kinds are of one or two channels alone.
+inline constexpr std::size_t kMostFaults = 90;
 
 /// Everything known of one kind of fault in one channel. Times are of the record, from its first
 /// tick at the nominal rate.
@@ -137,7 +139,7 @@ struct Misplacement {
 /// The faults at one moment, times in seconds by the nominal rate. Plain: it can be handed between
 /// threads; some 4 KiB.
 struct FaultView {
-  std::array<Fault, kFaultKinds * kFaultChannels> faults{};
+  std::array<Fault, kMostFaults> faults{};
   std::size_t count{0};
   GuardInputs inputs;
   RepairCounts repairs;

@@ -144,6 +144,8 @@ TEST(Misplaced, IsAGainThatThePowersDoNotShow) {
   };
   EXPECT_EQ(named("gain_error_wheelset1", 0.05, 0.001), "off_centre");
   EXPECT_EQ(named("gain_error_wheelset1", 0.05, 0.049), "");
+  EXPECT_EQ(named("gain_error_wheelset1", -0.05, -0.049), "");
+  EXPECT_EQ(named("gain_error_wheelset2", -0.05, 0.05), "");
   EXPECT_EQ(named("gain_error_wheelset2", 0.05, 0.001), "off_centre");
   EXPECT_EQ(named("gain_error_wheelset2", 0.05, -0.048), "");
   EXPECT_EQ(named("gain_error_frame", 0.05, 0.001), "") << "that their powers cannot show";

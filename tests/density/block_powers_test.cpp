@@ -95,11 +95,11 @@ TEST(BlockPowers, TwoRecordsAppendToOne) {
   EXPECT_NEAR(ring.change().size, 0.0, 1e-12) << "the other's are the newest";
 }
 
-// A stretch holds 64 blocks by then: ten records of seven are one more.
+// A stretch holds 64 blocks by then: fifty records of seven are five, a quarter of all.
 TEST(BlockPowers, ManyShortRecordsBehindALongOneCount) {
   BlockPowers powers{0.0};
   give(powers, 1000, 1.0);
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 50; ++i) {
     BlockPowers brief{0.0};
     give(brief, 7, 10.0);
     powers.append(brief);

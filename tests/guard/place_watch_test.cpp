@@ -26,6 +26,7 @@ class SeenBlocks {
   using Frame = std::function<Complex(double hz, Complex mean, Complex half_difference)>;
   Frame frame = [](double, Complex mean, Complex) { return 1.2 * mean; };
   std::function<double(double hz)> gain1 = [](double) { return 1.0; };
+  std::function<double(double hz)> gain2 = gain1;
   double foreign = 0.0;      ///< rms in the frame, of the mean's
   double noise_share = 0.0;  ///< of that, declared as noise
 
@@ -44,7 +45,8 @@ class SeenBlocks {
         const double hz = static_cast<double>(k) * kPlaceBinHz;
         const Complex one = draw();
         const Complex behind = one * std::polar(1.0, -2.0 * std::numbers::pi * hz * kBehindS);
-        const Complex two = kShared * behind + std::sqrt(1.0 - kShared * kShared) * draw();
+        const Complex alike = kShared * behind + std::sqrt(1.0 - kShared * kShared) * draw();
+        const Complex two = gain2(hz) * alike;
         const Complex first = gain1(hz) * one;
         const Complex mean = 0.5 * (first + two);
         const Complex seen = frame(hz, mean, 0.5 * (first - two)) + foreign * draw();
@@ -152,9 +154,7 @@ TEST(PlaceWatch, NamesAMountThatRingsAfterThreeBlocks) {
 TEST(PlaceWatch, TellsWhichWheelsetsMountRings) {
   for (const bool first : {true, false}) {
     SeenBlocks blocks;
-    blocks.gain1 = [first](double hz) {
-      return first ? ringing_gain(hz, 60.0) : 1.0 / ringing_gain(hz, 60.0);
-    };
+    (first ? blocks.gain1 : blocks.gain2) = [](double hz) { return ringing_gain(hz, 60.0); };
     blocks.frame = [](double, Complex, Complex) { return Complex{}; };
     blocks.add(3);
     const FaultChannel channel = first ? FaultChannel::kWheelset1 : FaultChannel::kWheelset2;
@@ -162,6 +162,14 @@ TEST(PlaceWatch, TellsWhichWheelsetsMountRings) {
     ASSERT_NE(fault, nullptr) << first;
     EXPECT_NEAR(fault->size, 60.0, 3.0);
   }
+}
+
+TEST(PlaceWatch, TakesAGapInTheWheelsetsSpectrumForNoMount) {
+  SeenBlocks blocks;
+  blocks.gain1 = blocks.gain2 = [](double hz) { return 1.0 / ringing_gain(hz, 60.0); };
+  blocks.frame = [](double hz, Complex mean, Complex) { return ringing_gain(hz, 60.0) * mean; };
+  blocks.add(6);
+  EXPECT_TRUE(blocks.log().faults().empty());
 }
 
 /// Friction that turns at every half period of a motion makes lines at its odd multiples.

@@ -53,7 +53,8 @@ bool is_no_gain(const effect::Explanation& e, double gain) {
     const auto& named = e.step[i].parameter[0];
     const std::string name = named.name;
     const double sign = name == "gain_error_wheelset1" ? 1.0 : -1.0;
-    if (name != "gain_error_frame" && sign * gain < kNoGain * named.estimate.value) return true;
+    const double shown = sign * gain / named.estimate.value;
+    if (name != "gain_error_frame" && shown < kNoGain) return true;
   }
   return false;
 }

@@ -22,6 +22,7 @@ void FaultLog::report(FaultKind kind, FaultChannel channel, double time_s, doubl
                       std::uint64_t events) noexcept {
   const Fault* const known = find(kind, channel);
   if (known == nullptr) {
+    if (size_ == faults_.size()) return;
     faults_[size_++] = {.kind = kind,
                         .channel = channel,
                         .time_s = time_s,

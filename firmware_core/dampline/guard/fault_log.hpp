@@ -11,7 +11,6 @@ namespace dampline {
 /// The faults of a stream: one entry for each kind and channel, and which seconds are spoilt.
 class FaultLog {
  public:
-  static constexpr std::size_t kMost = kFaultKinds * kFaultChannels;
   static constexpr std::int64_t kSeconds = 4096;  ///< how far back spoilt seconds are known
 
   static constexpr std::uint32_t kGapBit = 1U << kFaultKinds;  ///< see spoil_by_gap()
@@ -45,7 +44,7 @@ class FaultLog {
     std::array<std::uint16_t, kFaultChannels> kinds{};  // bit k: fault kind k
     bool gap{false};
   };
-  /// Of those that spoil seconds: identical channels and jitter spoil the whole record.
+  /// Of those that spoil seconds: from identical channels on they spoil the whole record.
   static_assert(static_cast<std::size_t>(FaultKind::kIdenticalChannels) == 16);
   /// Calls for each second from the first tick's to the last one's.
   template <typename Change>
@@ -58,7 +57,7 @@ class FaultLog {
   }
 
   double rate_hz_;
-  std::array<Fault, kMost> faults_{};
+  std::array<Fault, kMostFaults> faults_{};
   std::size_t size_{0};
   std::array<Second, kSeconds> spoilt_{};
 };

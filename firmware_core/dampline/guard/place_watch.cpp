@@ -13,11 +13,21 @@ constexpr std::uint32_t kPlaceBlocks = 6;
 constexpr double kFollows2 = 1.4;        // the frame's power over the wheelsets' at 1.2 Hz
 constexpr double kNoiseOfPlaces = 1.5;   // times the noise that is known
 constexpr double kRinging = 4.0;         // of a band over those beside it; sound records reach 1.8
+constexpr double kOwnPeak = 2.5;         // the same of the channel alone: no gap of the others
 constexpr int kRingingBlocks = 3;        // in a row
 constexpr std::size_t kPlaceSlice = 16;  // bins a call
 // Bands; lines of friction's own, at odd multiples of some 4 Hz, lie within.
 constexpr std::size_t kBeside = 3;
 constexpr std::size_t kFarBeside = 5;
+
+/// A band's value over the highest of those beside it.
+template <class Value>
+double over_beside(const Value& value, std::size_t i) noexcept {
+  double beside = kTinyPower;
+  for (std::size_t j = kBeside; j <= kFarBeside; ++j)
+    beside = std::max({beside, value(i - j), value(i + j)});
+  return value(i) / beside;
+}
 
 }  // namespace
 
@@ -88,20 +98,19 @@ void PlaceWatch::judge_mounts(FaultLog& log) noexcept {
     const auto shape = [&](std::size_t i) {
       return (*pairs[c][0])[i] / ((*pairs[c][1])[i] + kTinyPower);
     };
+    const auto own = [&](std::size_t i) { return (*pairs[c][0])[i]; };
     double highest = 0.0;
     std::size_t at = 0;
     for (std::size_t i = kFarBeside; i + kFarBeside < bands; ++i) {
-      double beside = kTinyPower;
-      for (std::size_t j = kBeside; j <= kFarBeside; ++j)
-        beside = std::max({beside, shape(i - j), shape(i + j)});
-      const double peak = shape(i) / beside;
+      const double peak =
+          std::min(over_beside(shape, i) / kRinging, over_beside(own, i) / kOwnPeak);
       if (peak <= highest) continue;
       highest = peak;
       at = i;
     }
     Ringing& ringing = ringing_[c];
     const bool there = at + 1 >= ringing.band && at <= ringing.band + 1;
-    ringing.blocks = highest <= kRinging ? 0 : there ? ringing.blocks + 1 : 1;
+    ringing.blocks = highest <= 1.0 ? 0 : there ? ringing.blocks + 1 : 1;
     ringing.band = at;
     if (ringing.blocks < kRingingBlocks) continue;
     const std::size_t middle = mounts_.first + at * kBandBins + kBandBins / 2;
