@@ -14,11 +14,14 @@
 
 #include "drivers/blf/object.hpp"
 #include "drivers/blf/source.hpp"
+#include "tests/drivers/file_frames.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
+using test::FileFrames;
+using test::frames_of;
 using test::TemporaryFile;
 using testing::HasSubstr;
 
@@ -60,6 +63,11 @@ std::string can_message(std::uint32_t id, std::uint8_t length = 8, std::uint8_t 
     put_number(body, 8 + i, static_cast<std::uint8_t>(0x11 * (i + 1)));
   return body;
 }
+std::string with_data(std::string body, std::size_t from, std::uint8_t bytes) {
+  body.resize(from);
+  for (std::size_t i = 0; i < bytes; ++i) body += static_cast<char>(i + 1);
+  return body;
+}
 /// CAN_FD_MESSAGE: channel, flags, dlc, identifier, length of the frame, arbitration bits, FD
 /// flags, valid bytes, then 64 of them.
 std::string fd_message(std::uint32_t id, std::uint8_t bytes, std::uint8_t fd_flags,
@@ -70,9 +78,7 @@ std::string fd_message(std::uint32_t id, std::uint8_t bytes, std::uint8_t fd_fla
   put_number(body, 4, id);
   put_number(body, 13, fd_flags);
   put_number(body, 14, bytes);
-  body.resize(20);
-  for (std::size_t i = 0; i < bytes; ++i) body += static_cast<char>(i + 1);
-  return body;
+  return with_data(body, 20, bytes);
 }
 /// CAN_FD_MESSAGE_64: channel, dlc, valid bytes, transmissions, identifier, length, flags.
 std::string fd_message_64(std::uint32_t id, std::uint8_t bytes, std::uint32_t flags) {
@@ -81,9 +87,7 @@ std::string fd_message_64(std::uint32_t id, std::uint8_t bytes, std::uint32_t fl
   put_number(body, 2, bytes);
   put_number(body, 4, id);
   put_number(body, 12, flags);
-  body.resize(40);
-  for (std::size_t i = 0; i < bytes; ++i) body += static_cast<char>(i + 1);
-  return body;
+  return with_data(body, 40, bytes);
 }
 
 struct ReadObject {
@@ -243,27 +247,11 @@ std::string plain_container(const std::string& content) {
   return out + std::string(content.size() % 4, '\0');  // as Vector's tools pad it
 }
 
-struct FileFrames {
-  std::vector<CanFrame> frames;
-  hal::SourceHealth health;
-  std::string error;
-  Errc reason{};
-};
 FileFrames blf_file(const std::string& bytes, const std::vector<std::string>& interfaces = {},
                     bool skip = false) {
   const TemporaryFile file{bytes};
-  auto source =
-      BlfSource::open({.path = file.path(), .skip_bad_lines = skip, .interfaces = interfaces});
-  FileFrames out;
-  std::array<CanFrame, 3> part;
-  auto count = source.value()->read(part);
-  for (; count.ok(); count = source.value()->read(part))
-    out.frames.insert(out.frames.end(), part.begin(),
-                      part.begin() + static_cast<std::ptrdiff_t>(count.value()));
-  out.reason = count.error();
-  out.health = source.value()->health();
-  out.error = source.value()->error_text();
-  return out;
+  return frames_of(
+      BlfSource::open({.path = file.path(), .skip_bad_lines = skip, .interfaces = interfaces}));
 }
 std::string frame_at(std::uint64_t time_ns, std::uint16_t channel = 1) {
   return bytes_of({1, can_message(0x100, 8, 0, channel), time_ns});

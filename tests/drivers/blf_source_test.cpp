@@ -9,12 +9,15 @@
 
 #include "drivers/blf/source.hpp"
 #include "drivers/record/frames.hpp"
+#include "tests/drivers/file_frames.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 using test::content_of;
+using test::FileFrames;
+using test::frames_of;
 using test::TemporaryFile;
 using testing::HasSubstr;
 
@@ -22,31 +25,9 @@ std::string written(const std::string& name) {
   return content_of(std::string{DAMPLINE_SOURCE_DIR} + "/tests/fuzz/corpus/blf/" + name).substr(1);
 }
 
-struct BlfFrames {
-  std::vector<CanFrame> frames;
-  hal::SourceHealth health;
-  std::string error;
-  Errc reason{};
-};
-BlfFrames blf_frames(const std::string& bytes, bool skip = false) {
-  const TemporaryFile file{bytes};
-  auto source = open_frames({.path = file.path(), .skip_bad_lines = skip});
-  if (!source) return {{}, {}, source.error_text(), source.failure().code};
-  BlfFrames out;
-  std::array<CanFrame, 2> part;
-  auto read = source.value()->read(part);
-  for (; read; read = source.value()->read(part))
-    out.frames.insert(out.frames.end(), part.begin(),
-                      part.begin() + static_cast<std::ptrdiff_t>(read.value()));
-  out.reason = read.error();
-  out.health = source.value()->health();
-  out.error = source.value()->error_text();
-  return out;
-}
-
 TEST(BlfSource, ReadsEveryKindOfFrame) {
   for (const char* name : {"zlib", "plain"}) {
-    const BlfFrames out = blf_frames(written(name));
+    const FileFrames out = frames_of(written(name));
     ASSERT_EQ(out.frames.size(), 5U) << name << out.error;
     EXPECT_EQ(out.reason, Errc::kEndOfStream);
     EXPECT_FALSE(out.health.truncated);
@@ -70,7 +51,7 @@ TEST(BlfSource, CutOffAnywhereItGivesWhatIsThere) {
     const std::string whole = written(name);
     std::size_t most = 0;
     for (std::size_t size = 80; size < whole.size(); ++size) {
-      const BlfFrames out = blf_frames(whole.substr(0, size));
+      const FileFrames out = frames_of(whole.substr(0, size));
       EXPECT_NE(out.reason, Errc::kIo);
       EXPECT_GE(out.frames.size(), most) << size;
       most = out.frames.size();
@@ -83,10 +64,10 @@ TEST(BlfSource, CutOffAnywhereItGivesWhatIsThere) {
 TEST(BlfSource, NamesTheContainerThatIsDamaged) {
   std::string bytes = written("zlib");
   for (std::size_t i = 190; i < 200; ++i) bytes[i] = '\xFF';
-  const BlfFrames stopped = blf_frames(bytes);
+  const FileFrames stopped = frames_of(bytes);
   EXPECT_EQ(stopped.reason, Errc::kMalformed);
   EXPECT_THAT(stopped.error, HasSubstr("byte 144"));
-  const BlfFrames skipped = blf_frames(bytes, true);
+  const FileFrames skipped = frames_of(bytes, true);
   EXPECT_EQ(skipped.reason, Errc::kEndOfStream);
   EXPECT_GE(skipped.health.malformed, 1U);
 }
@@ -95,8 +76,8 @@ TEST(BlfSource, GoesOnBehindAnObjectThatIsNone) {
   std::string bytes = written("plain");
   const std::size_t second = bytes.find("LOBJ", bytes.find("LOBJ", 180) + 1);
   bytes[second] = 'X';
-  EXPECT_THAT(blf_frames(bytes).error, HasSubstr("expected an object (LOBJ)"));
-  const BlfFrames skipped = blf_frames(bytes, true);
+  EXPECT_THAT(frames_of(bytes).error, HasSubstr("expected an object (LOBJ)"));
+  const FileFrames skipped = frames_of(bytes, true);
   EXPECT_EQ(skipped.frames.size(), 4U);
   EXPECT_EQ(skipped.health.malformed, 1U);
 }

@@ -11,41 +11,19 @@
 #include <vector>
 
 #include "drivers/record/frames.hpp"
+#include "tests/drivers/file_frames.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
+using test::FileFrames;
+using test::frames_of;
 using test::TemporaryFile;
 using testing::HasSubstr;
 
-struct Frames {
-  std::vector<CanFrame> frames;
-  hal::SourceHealth health;
-  std::string error;
-  Errc reason{};
-  std::vector<std::string> interfaces;
-};
-Frames frames_of(const std::string& text, bool skip = false) {
-  const TemporaryFile file{text};
-  auto source = open_frames({.path = file.path(), .skip_bad_lines = skip});
-  if (!source) return {{}, {}, source.error_text(), source.failure().code, {}};
-  Frames out;
-  std::array<CanFrame, 3> part;
-  auto read = source.value()->read(part);
-  for (; read; read = source.value()->read(part))
-    out.frames.insert(out.frames.end(), part.begin(),
-                      part.begin() + static_cast<std::ptrdiff_t>(read.value()));
-  out.reason = read.error();
-  out.health = source.value()->health();
-  out.error = source.value()->error_text();
-  for (std::size_t i = 0; i < source.value()->interfaces().size(); ++i)
-    out.interfaces.emplace_back(source.value()->interfaces().name(i));
-  return out;
-}
-
 TEST(CandumpScreen, ReadsEveryKindOfFrame) {
-  const Frames out = frames_of(
+  const FileFrames out = frames_of(
       " (1600000001.000300)  can1  TX B E  12345678   [0]  remote request\n"
       " (1600000001.000400)  can1  RX B -       123  [12]  11 22 33 44 55 66 77 88 99 AA BB CC\n"
       " (1600000001.000500)  can0  RX - -  20000004   [8]  00 04 00 00 00 00 00 00   ERRORFRAME\n"
@@ -63,7 +41,7 @@ TEST(CandumpScreen, ReadsEveryKindOfFrame) {
 }
 
 TEST(AscParser, ReadsEveryKindOfFrame) {
-  const Frames out = frames_of(
+  const FileFrames out = frames_of(
       "date Tue Nov 14 10:13:20.123 pm 2023\r\nbase hex  timestamps absolute\r\n"
       "internal events logged\r\n// a comment\r\nBegin Triggerblock Tue Nov 14 10:13:20 pm 2023\r\n"
       "   0.000000 Start of measurement\r\n"
@@ -91,7 +69,7 @@ TEST(AscParser, ReadsEveryKindOfFrame) {
 }
 
 TEST(AscParser, KnowsDecimalNumbersAndTimesSinceTheLineBefore) {
-  const Frames out = frames_of(
+  const FileFrames out = frames_of(
       "date Tue Nov 14 22:13:20 2023\nbase dec timestamps relative\n"
       "  1.5 1  291  Rx  d 2 17 255\n  0.25 1  Statistic: D 0\n  0.25 1  291  Rx  d 1 9\n");
   ASSERT_EQ(out.frames.size(), 2U) << out.error;
@@ -101,12 +79,12 @@ TEST(AscParser, KnowsDecimalNumbersAndTimesSinceTheLineBefore) {
 }
 
 TEST(TrcParser, ReadsEveryVersion) {
-  const Frames v10 = frames_of(
+  const FileFrames v10 = frames_of(
       ";   Start time: 01.01.2020\n     1)   1059 0300 2 01 02\n     2) 1060 FFFFFFFF 4 00 00 00 "
       "08\n");
   ASSERT_EQ(v10.frames.size(), 1U) << v10.error;
   EXPECT_EQ(v10.frames[0].time_ns, 1'059'000'000);
-  const Frames v11 = frames_of(
+  const FileFrames v11 = frames_of(
       ";$FILEVERSION=1.1\n 1) 1059.9 Rx 0300 7 00 00 00 00 04 00 00\n"
       " 2) 1060.0 Warng FFFFFFFF 4 00 00 00 08 BUSHEAVY\n 3) 1283.2 Tx 18EFC034 2 A0 04\n"
       " 4) 1300.0 Rx 0301 3 RTR\n");
@@ -114,11 +92,11 @@ TEST(TrcParser, ReadsEveryVersion) {
   EXPECT_EQ(v11.frames[0].time_ns, 1'059'900'000);
   EXPECT_TRUE(v11.frames[1].extended);
   EXPECT_TRUE(v11.frames[2].remote);
-  const Frames v13 =
+  const FileFrames v13 =
       frames_of(";$FILEVERSION=1.3\n 1) 17535.4 2 Tx 00000100 - 8 00 00 00 00 00 00 00 01\n");
   ASSERT_EQ(v13.frames.size(), 1U) << v13.error;
   EXPECT_EQ(v13.interfaces.at(0), "can2");
-  const Frames v20 = frames_of(
+  const FileFrames v20 = frames_of(
       ";$FILEVERSION=2.0\n;$COLUMNS=N,O,T,I,d,l,D\n 1 1059.900 DT 0300 Rx 2 01 02\n"
       " 2 1060.100 FB 18EFC034 Rx 12 00 01 02 03 04 05 06 07 08 09 0A 0B\n"
       " 3 1061.000 ST    Rx    00 00 00 00\n 4 1062.345 RR 0100 Tx 3\n");
@@ -126,7 +104,7 @@ TEST(TrcParser, ReadsEveryVersion) {
   EXPECT_TRUE(v20.frames[1].fd);
   EXPECT_EQ(v20.frames[1].length, 12);
   EXPECT_EQ(v20.frames[2].time_ns, 1'062'345'000);
-  const Frames v21 = frames_of(
+  const FileFrames v21 = frames_of(
       ";$FILEVERSION=2.1\n;$COLUMNS=N,O,T,B,I,d,R,L,D\n"
       " 1 1.5 FD 3 0300 Rx - 9 00 01 02 03 04 05 06 07 08 09 0A 0B\n");
   ASSERT_EQ(v21.frames.size(), 1U) << v21.error;
@@ -137,24 +115,24 @@ TEST(TrcParser, ReadsEveryVersion) {
 TEST(FrameLines, NamesFileLineAndColumnOfABadLine) {
   const std::string text =
       ";$FILEVERSION=1.1\n 1) 10.0 Rx 0300 2 00 0G\n 2) 11.0 Rx 0300 2 00 01\n";
-  const Frames stopped = frames_of(text);
+  const FileFrames stopped = frames_of(text);
   EXPECT_EQ(stopped.reason, Errc::kMalformed);
   EXPECT_THAT(stopped.error, HasSubstr(":2:23: found \"0G\", expected a byte"));
-  const Frames skipped = frames_of(text, true);
+  const FileFrames skipped = frames_of(text, true);
   EXPECT_EQ(skipped.frames.size(), 1U);
   EXPECT_EQ(skipped.health.malformed, 1U);
 }
 
 TEST(FrameLines, HoldsATimeThatGoesBackALittleAndRefusesMore) {
   const std::string head = ";$FILEVERSION=1.1\n 1) 5000.0 Rx 0300 0\n";
-  const Frames held = frames_of(head + " 2) 4999.0 Rx 0300 0\n");
+  const FileFrames held = frames_of(head + " 2) 4999.0 Rx 0300 0\n");
   EXPECT_EQ(held.health.reordered, 1U);
   EXPECT_EQ(held.frames.at(1).time_ns, 5'000'000'000);
   EXPECT_THAT(frames_of(head + " 2) 3999.0 Rx 0300 0\n").error, HasSubstr("does not go back"));
 }
 
 TEST(FrameLines, ALastLineWithoutItsEndIsCutOff) {
-  const Frames out = frames_of(";$FILEVERSION=1.1\n 1) 5.0 Rx 0300 1 11\n 2) 6.0 Rx 0300 2 0");
+  const FileFrames out = frames_of(";$FILEVERSION=1.1\n 1) 5.0 Rx 0300 1 11\n 2) 6.0 Rx 0300 2 0");
   EXPECT_EQ(out.frames.size(), 1U);
   EXPECT_TRUE(out.health.truncated);
   EXPECT_EQ(out.reason, Errc::kEndOfStream);

@@ -12,12 +12,15 @@
 
 #include "drivers/record/frames.hpp"
 #include "drivers/record/rows.hpp"
+#include "tests/drivers/file_frames.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 using test::content_of;
+using test::FileFrames;
+using test::frames_of;
 using test::TemporaryFile;
 using testing::HasSubstr;
 
@@ -29,28 +32,6 @@ std::string mdf_written(const std::string& name) {
   return content_of(std::string{DAMPLINE_SOURCE_DIR} + "/tests/fuzz/corpus/mdf/" + name).substr(1);
 }
 
-struct MdfFrames {
-  std::vector<CanFrame> frames;
-  hal::SourceHealth health;
-  std::string error;
-  Errc reason{};
-};
-MdfFrames mdf_frames(const std::string& bytes, bool skip = false) {
-  const TemporaryFile file{bytes};
-  auto source = open_frames({.path = file.path(), .skip_bad_lines = skip});
-  if (!source) return {{}, {}, source.error_text(), source.failure().code};
-  MdfFrames out;
-  std::array<CanFrame, 2> part;
-  auto read = source.value()->read(part);
-  for (; read; read = source.value()->read(part))
-    out.frames.insert(out.frames.end(), part.begin(),
-                      part.begin() + static_cast<std::ptrdiff_t>(read.value()));
-  out.reason = read.error();
-  out.health = source.value()->health();
-  out.error = source.value()->error_text();
-  return out;
-}
-
 /// Puts a number of 8 bytes at an offset behind the first block of a name.
 std::string with_number(std::string bytes, const std::string& block, std::size_t offset,
                         std::uint64_t number) {
@@ -60,7 +41,7 @@ std::string with_number(std::string bytes, const std::string& block, std::size_t
 
 TEST(MdfSource, ReadsEveryKindOfFrame) {
   for (const char* name : kFrameFiles) {
-    const MdfFrames out = mdf_frames(mdf_written(name));
+    const FileFrames out = frames_of(mdf_written(name));
     ASSERT_EQ(out.frames.size(), 5U) << name << out.error;
     EXPECT_EQ(out.reason, Errc::kEndOfStream);
     EXPECT_FALSE(out.health.truncated) << name;
@@ -84,7 +65,7 @@ TEST(MdfSource, CutOffAnywhereItGivesWhatIsThereOrSaysThatItIsDamaged) {
   for (const char* name : kFrameFiles) {
     const std::string whole = mdf_written(name);
     for (std::size_t size = 64; size < whole.size(); size += 7) {
-      const MdfFrames out = mdf_frames(whole.substr(0, size));
+      const FileFrames out = frames_of(whole.substr(0, size));
       const bool open_ended = std::string_view{name} == "unfinished";
       EXPECT_TRUE(out.reason == Errc::kMalformed || out.health.truncated || open_ended ||
                   out.frames.size() == 5)
@@ -96,34 +77,34 @@ TEST(MdfSource, CutOffAnywhereItGivesWhatIsThereOrSaysThatItIsDamaged) {
 TEST(MdfSource, RefusesLinksThatLeadInACircle) {
   const std::string bytes = mdf_written("fixed");
   const std::uint64_t group = bytes.find("##CG");
-  EXPECT_THAT(mdf_frames(with_number(bytes, "CG", 24, group)).error,
+  EXPECT_THAT(frames_of(with_number(bytes, "CG", 24, group)).error,
               HasSubstr("in a circle to this ##CG"));
   const std::string list = mdf_written("list");
-  EXPECT_THAT(mdf_frames(with_number(list, "DL", 24, list.find("##DL"))).error,
+  EXPECT_THAT(frames_of(with_number(list, "DL", 24, list.find("##DL"))).error,
               HasSubstr("in a circle"));
 }
 
 TEST(MdfSource, RefusesLinksAndLengthsOutsideTheFile) {
   const std::string bytes = mdf_written("fixed");
   for (const std::uint64_t wrong : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
-    EXPECT_THAT(mdf_frames(with_number(bytes, "DG", 32, wrong)).error, HasSubstr("##CG"));
-    EXPECT_THAT(mdf_frames(with_number(bytes, "DG", 40, wrong)).error,
+    EXPECT_THAT(frames_of(with_number(bytes, "DG", 32, wrong)).error, HasSubstr("##CG"));
+    EXPECT_THAT(frames_of(with_number(bytes, "DG", 40, wrong)).error,
                 HasSubstr("expected a block of data"));
-    EXPECT_THAT(mdf_frames(with_number(bytes, "CG", 16, wrong)).error, testing::Not(""));
+    EXPECT_THAT(frames_of(with_number(bytes, "CG", 16, wrong)).error, testing::Not(""));
   }
-  const MdfFrames longer = mdf_frames(with_number(bytes, "DT", 8, std::uint64_t{1} << 40));
+  const FileFrames longer = frames_of(with_number(bytes, "DT", 8, std::uint64_t{1} << 40));
   EXPECT_TRUE(longer.reason == Errc::kMalformed || longer.health.truncated);
 }
 
 TEST(MdfSource, NamesWhatItDoesNotRead) {
   std::string bytes = mdf_written("unfinished");
   bytes[60] = 0x10;
-  EXPECT_THAT(mdf_frames(bytes).error, HasSubstr("was not finalised"));
+  EXPECT_THAT(frames_of(bytes).error, HasSubstr("was not finalised"));
   bytes = mdf_written("fixed");
   for (std::size_t at = bytes.find("##CN"); at != std::string::npos;
        at = bytes.find("##CN", at + 1))
     bytes[at + 24 + 64 + 2] = 1;  // unsigned, big-endian
-  EXPECT_THAT(mdf_frames(bytes).error, HasSubstr("little-endian"));
+  EXPECT_THAT(frames_of(bytes).error, HasSubstr("little-endian"));
 }
 
 TEST(MdfSource, DeflatedDataThatAreDamagedAreAnErrorWithTheirByte) {
@@ -131,12 +112,12 @@ TEST(MdfSource, DeflatedDataThatAreDamagedAreAnErrorWithTheirByte) {
     std::string bytes = mdf_written(name);
     const std::size_t block = bytes.find("##DZ");
     for (std::size_t i = 0; i < 6; ++i) bytes[block + 48 + i] = '\xFF';
-    EXPECT_THAT(mdf_frames(bytes).error, HasSubstr(std::to_string(block))) << name;
+    EXPECT_THAT(frames_of(bytes).error, HasSubstr(std::to_string(block))) << name;
   }
 }
 
 TEST(MdfSource, HoldsFewerRecordsThanItSays) {
-  const MdfFrames out = mdf_frames(with_number(mdf_written("fixed"), "CG", 24 + 48 + 8, 99));
+  const FileFrames out = frames_of(with_number(mdf_written("fixed"), "CG", 24 + 48 + 8, 99));
   EXPECT_EQ(out.frames.size(), 5U);
   EXPECT_TRUE(out.health.truncated);
 }

@@ -16,13 +16,6 @@ namespace {
 
 constexpr double kRateHz = 300.0;
 
-Sample sample_of(std::int64_t tick, double wheelset_mps2) {
-  Sample s;
-  s.tick = tick;
-  s.accel_mps2 = {99.0, wheelset_mps2, wheelset_mps2};
-  return s;
-}
-
 TEST(FrameNoise, IsKnownToAFewPercentUnderFrictionsLeaps) {
   for (const double scale : {1.0, 2.5}) {
     for (const sim::Load load : {sim::Load::kLaden, sim::Load::kEmpty}) {
@@ -41,7 +34,7 @@ TEST(FrameNoise, IsKnownToAFewPercentUnderFrictionsLeaps) {
 
 TEST(FrameNoise, IsUnknownOfAShortRecord) {
   FrameNoise noise{kRateHz, {}};
-  for (int n = 0; n < 3000; ++n) noise.take(sample_of(n, 0.0));
+  for (int n = 0; n < 3000; ++n) noise.take({.tick = n});
   EXPECT_EQ(noise.noise_mps2(), 0.0);
 }
 

@@ -303,17 +303,12 @@ Joint fit_jointly(Model& model, std::vector<Series>& records, double ridge, cons
 
 std::optional<Trial> try_change(const Model& model, const std::vector<Series>& records,
                                 double ridge) {
-  constexpr std::size_t kPlaces = 10;
+  const std::vector<double> places = places_of_steps(records);
   std::vector<Change> changes;
   for (const int side : {0, 1, -1}) {
     changes.push_back({Regressor::Time::kSlope, 0.0, side});
-    for (std::size_t k = 1; k < kPlaces; ++k) {
-      const double share = static_cast<double>(k) / kPlaces;
-      if (cycles_before_and_after(records, share))
-        changes.push_back({Regressor::Time::kStep, share, side});
-    }
+    for (const double place : places) changes.push_back({Regressor::Time::kStep, place, side});
   }
-  const std::size_t per_side = changes.size() / 3;
   std::vector<Equations> equations = equations_of(model.columns, records);
   insert_changes(model, changes, records, equations);
   const Regression regression{equations};
@@ -337,8 +332,9 @@ std::optional<Trial> try_change(const Model& model, const std::vector<Series>& r
     best.at_share = set.size() == 1 ? changes[set[0]].at : 0.0;
   };
   for (std::size_t k = 0; k < changes.size(); ++k) look({k}, 1.0);
-  for (std::size_t from = 0; from < changes.size() && per_side > 2; from += per_side) {
-    std::vector<std::size_t> steps(per_side - 1);
+  for (std::size_t from = 0; from < changes.size() && places.size() > 1;
+       from += 1 + places.size()) {
+    std::vector<std::size_t> steps(places.size());
     std::iota(steps.begin(), steps.end(), from + 1);
     look(steps, kBetter);
   }

@@ -48,7 +48,8 @@ constexpr Eigen::Index kFewestAtRest = 25;  // samples
 constexpr double kStill = 0.02;             // of its range
 constexpr double kUntilTurned = 0.5;        // periods after a rest, at most, until the motion turns
 constexpr double kCycle = 2.0;              // ranges: to and fro
-constexpr double kMostRest = 0.8;           // of the record: more is its own kind of motion
+constexpr int kStepPlaces = 10;
+constexpr double kMostRest = 0.8;  // of the record: more is its own kind of motion
 
 /// 1 where the deflection stays within `reach_m` for `window` samples.
 Eigen::VectorXd at_rest(const Eigen::VectorXd& x, Eigen::Index window, double reach_m) {
@@ -224,14 +225,27 @@ void Series::set_motion(const std::vector<core::Motion>& rows) {
   }
 }
 
-bool cycles_before_and_after(const std::vector<Series>& records, double share) {
-  return std::all_of(records.begin(), records.end(), [share](const Series& r) {
-    const double range_m = r.deflection_m.maxCoeff() - r.deflection_m.minCoeff();
-    const auto before = static_cast<Eigen::Index>(share * static_cast<double>(r.size()));
-    const double first_m = r.velocity_mps.head(before).cwiseAbs().sum() * r.interval_s;
-    const double last_m = r.velocity_mps.tail(r.size() - before).cwiseAbs().sum() * r.interval_s;
-    return std::min(first_m, last_m) >= kCycle * range_m;
-  });
+namespace {
+
+bool cycles_before_and_after(const Series& r, double share) {
+  const double range_m = r.deflection_m.maxCoeff() - r.deflection_m.minCoeff();
+  const auto before = static_cast<Eigen::Index>(share * static_cast<double>(r.size()));
+  const double first_m = r.velocity_mps.head(before).cwiseAbs().sum() * r.interval_s;
+  const double last_m = r.velocity_mps.tail(r.size() - before).cwiseAbs().sum() * r.interval_s;
+  return std::min(first_m, last_m) >= kCycle * range_m;
+}
+
+}  // namespace
+
+std::vector<double> places_of_steps(const std::vector<Series>& records) {
+  std::vector<double> out;
+  for (int place = 1; place < kStepPlaces; ++place) {
+    const double share = static_cast<double>(place) / kStepPlaces;
+    if (std::all_of(records.begin(), records.end(),
+                    [share](const Series& r) { return cycles_before_and_after(r, share); }))
+      out.push_back(share);
+  }
+  return out;
 }
 
 Series read_series(const std::string& path, const Config& config, bool skip_bad_lines,

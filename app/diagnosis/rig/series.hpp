@@ -70,10 +70,10 @@ struct Series {
   return 3 + series.config.velocity_half_width;
 }
 
-/// Whether every record moves to and fro at least once over its whole range before that share of
-/// it, and once after. A friction with memory does not know its state at the first sample, and what
-/// it makes of the first stroke is no change.
-[[nodiscard]] bool cycles_before_and_after(const std::vector<Series>& records, double share);
+/// Tenths of the records at which a parameter may step: those before and after which every record
+/// moves to and fro at least once over its whole range. A friction with memory does not know its
+/// state at the first sample, and what it makes of the first stroke is no change.
+[[nodiscard]] std::vector<double> places_of_steps(const std::vector<Series>& records);
 
 /// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
 /// naming the file, what was found and what was expected.

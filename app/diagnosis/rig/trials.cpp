@@ -18,7 +18,6 @@ constexpr int kSkewRefinements = 4;
 constexpr double kWorthALook = 0.95;
 constexpr std::size_t kLooks = 3;
 constexpr double kLeastSkew = 0.12;  // samples
-constexpr std::size_t kStepPlaces = 10;
 
 std::vector<Regressor> all_columns(const TrialBase& base, std::vector<Regressor> more) {
   std::vector<Regressor> out = base.columns;
@@ -235,15 +234,14 @@ std::optional<Trial> try_skew(const std::vector<Series>& records, const TrialBas
 std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBase& base) {
   const std::vector<Drifting> drifting = what_may_drift(records, base);
   std::vector<Regressor> columns;
-  std::vector<const char*> names;
-  for (std::size_t place = 0; place < kStepPlaces; ++place) {
-    const double share = static_cast<double>(place) / kStepPlaces;
-    if (place > 0 && !cycles_before_and_after(records, share)) continue;
-    for (const Drifting& d : drifting) {
+  const std::vector<double> places = places_of_steps(records);
+  for (const Drifting& d : drifting) {
+    columns.push_back(d.column);
+    columns.back().time = Regressor::Time::kSlope;
+    for (const double place : places) {
       columns.push_back(d.column);
-      columns.back().time = place == 0 ? Regressor::Time::kSlope : Regressor::Time::kStep;
-      columns.back().at = share;
-      names.push_back(d.name);
+      columns.back().time = Regressor::Time::kStep;
+      columns.back().at = place;
     }
   }
   const TrialFits fits{records, base, columns};
@@ -257,7 +255,7 @@ std::optional<Trial> try_drift(const std::vector<Series>& records, const TrialBa
     if (!fit.beats(best.fit)) continue;
     best.fit = std::move(fit);
     best.columns = {columns[c]};
-    best.parameter = names[c];
+    best.parameter = drifting[c / (1 + places.size())].name;
     best.at_share = columns[c].time == Regressor::Time::kSlope ? -1.0 : columns[c].at;
   }
   if (best.columns.empty()) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dampline::app {
@@ -14,8 +15,7 @@ namespace {
 constexpr double kBelowFloor = 0.85;
 constexpr double kFaintGain = 0.025;
 constexpr double kShareOfExcess = 0.1;  // over the floor, that effects must take
-// Sensors out of place: bench/places, seeds 1 to 5, and every effect of `simulate` at 1.5 times its
-// usual strength. These leave at most 0.05, or 2.8 times the floor.
+// Sensors out of place; effects leave at most 0.05, or 2.8 times the floor (P1 of constants.md).
 constexpr double kMuchLeft = 0.1;
 constexpr double kFarOverFloor = 2.0;
 constexpr double kFarthestOverFloor = 3.0;
@@ -51,7 +51,7 @@ bool is_no_gain(const effect::Explanation& e, double gain) {
   for (std::size_t i = 0; i < e.step_count; ++i) {
     if (e.step[i].chosen.effect != effect::Effect::kGainError) continue;
     const auto& named = e.step[i].parameter[0];
-    const std::string name = named.name;
+    const std::string_view name = named.name;
     const double sign = name == "gain_error_wheelset1" ? 1.0 : -1.0;
     const double shown = sign * gain / named.estimate.value;
     if (name != "gain_error_frame" && shown < kNoGain) return true;

@@ -105,6 +105,8 @@ class BlockSurvey {
   /// A slice of the work; true when figures() has just become those of the block.
   bool advance() noexcept;
   [[nodiscard]] const BlockFigures& figures() const noexcept { return figures_; }
+  /// The block's.
+  [[nodiscard]] const SpectrumSums& sums() const noexcept { return *block_; }
   /// How much each bin's phase says of the delay between the wheelsets.
   [[nodiscard]] const PairSpectra::Weights& weights() const noexcept { return weights_; }
   /// The frame's lag is measured against what follows, not against what came before.

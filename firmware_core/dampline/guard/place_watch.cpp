@@ -80,7 +80,6 @@ void PlaceWatch::add(std::size_t k, Bin& bin) const noexcept {
   };
   join(bin.frame, b.frame[k]);
   join(bin.mean, b.mean[k]);
-  join(bin.difference, 0.5 * (b.wheelset1[k] + b.wheelset2[k]) - b.mean[k]);
   join(bin.wheelset1, b.wheelset1[k]);
   join(bin.wheelset2, b.wheelset2[k]);
   join(bin.mean_frame, 0.5 * (b.frame_to[0][k] + b.frame_to[1][k]));
@@ -140,7 +139,8 @@ Misplacement PlaceWatch::misplacement() const noexcept {
     const Bin& b = pitch_bins_[k - pitch_.first];
     const Complex cross =
         b.difference_frame - std::conj(b.mean_difference) * b.mean_frame / (b.mean + kTinyPower);
-    const double own = b.difference - std::norm(b.mean_difference) / (b.mean + kTinyPower);
+    const double half_difference = 0.5 * (b.wheelset1 + b.wheelset2) - b.mean;
+    const double own = half_difference - std::norm(b.mean_difference) / (b.mean + kTinyPower);
     seen += cross;
     difference += own;
     first += b.wheelset1;

@@ -38,7 +38,7 @@ class PlaceWatch {
   static constexpr std::size_t kMostBands = 48;
   /// Powers and products conj(first) second of a bin.
   struct Bin {
-    double frame{0.0}, mean{0.0}, difference{0.0};
+    double frame{0.0}, mean{0.0};
     double wheelset1{0.0}, wheelset2{0.0};
     Complex mean_frame{}, difference_frame{}, mean_difference{};
   };

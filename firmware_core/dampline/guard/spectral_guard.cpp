@@ -67,8 +67,7 @@ void SpectralGuard::advance(FaultLog& log, GuardInputs& inputs) noexcept {
     }
     const std::uint32_t enough = aligned_ ? PairSpectra::kSegmentsPerBlock : kFirstSegments;
     if (sums.segments >= enough && !survey_.busy() && next_ == Test::kNone) {
-      block_ = &spectra_.take();
-      survey_.start(*block_);
+      survey_.start(spectra_.take());
     }
     return;
   }
@@ -106,7 +105,7 @@ void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
     case Test::kGain:
       following_.add(survey_.figures().following, survey_.figures().last_tick);
       if (usable_ && few_impacts_[1] && few_impacts_[2]) judge_gain(log);
-      places_.start(*block_, survey_.figures());
+      places_.start(survey_.sums(), survey_.figures());
       next_ = Test::kPlaces;
       return;
     case Test::kPlaces:

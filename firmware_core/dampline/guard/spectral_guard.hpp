@@ -76,7 +76,6 @@ class SpectralGuard {
   BlockSurvey survey_;
   TimingWatch timing_;
   PlaceWatch places_;
-  const SpectrumSums* block_{nullptr};  // that is judged
   BlockSeries gain_;
   BlockSeries following_;
   std::array<BlockSeries, 2> noise_{};  // of the frame; of both wheelsets together
