@@ -70,6 +70,7 @@ RunResult result_of(const SegmentState& segment, const Config& config) {
 
 SegmentRun::SegmentRun(const Config& config, ExplainRun& run)
     : run_{run},
+      low_pass_{run.config().estimator.anti_alias, run.config().estimator.sample_rate_hz},
       estimator_{std::make_unique<Estimator>(segment_config(config))},
       segment_ns_{std::llround(1e9 * config.spool.segment_s)},
       every_ns_{std::llround(1e9 * config.spool.every_s)} {
@@ -81,7 +82,7 @@ void SegmentRun::take(const Sample& sample) noexcept {
                               sample.time_ns < newest_ns_);
   if (other) end();
   if (!any_) begin(sample);
-  estimator_->update(sample);
+  estimator_->update(low_pass_.update(sample));
   fresh_ = true;
   newest_tick_ = sample.tick;
   newest_ns_ = sample.time_ns;

@@ -11,6 +11,7 @@
 #include "app/run/provenance.hpp"
 #include "app/run/state.hpp"
 #include "dampline/damping/estimator.hpp"
+#include "dampline/motion/reference_low_pass.hpp"
 
 namespace dampline::app {
 
@@ -57,6 +58,7 @@ class SegmentRun {
   void export_to(SegmentState& out) noexcept;
 
   ExplainRun& run_;
+  ReferenceLowPass low_pass_;
   std::unique_ptr<Estimator> estimator_;
   std::int64_t segment_ns_;
   std::int64_t every_ns_;

@@ -29,8 +29,9 @@ struct EstimatorConfig {
   /// 0.7 or 1.0: what is slower is not velocity but drift. 0: chosen once, from the sensors' noise.
   double velocity_corner_hz{0.0};
   std::array<double, kCurveSegments> curve_nodes_mps{kDefaultCurveNodesMps};
-  AntiAliasConfig anti_alias{};  ///< of the sensors
-  ScreenConfig screen{};         ///< its rate is taken from sample_rate_hz
+  /// Of the sensors. What an Identifier hands on has been through a ReferenceLowPass.
+  AntiAliasConfig anti_alias{};
+  ScreenConfig screen{};  ///< its rate is taken from sample_rate_hz
   Memory memory{Memory::kInfinite};
   double memory_s{0.0};  ///< length of the window, or time constant
 };

@@ -27,7 +27,7 @@ FokkerPlanckConfig density_config(const EstimatorConfig& config) noexcept {
   FokkerPlanckConfig out;
   out.sample_rate_hz = config.sample_rate_hz;
   out.curve_nodes_mps = config.curve_nodes_mps;
-  out.anti_alias_corner_hz = config.anti_alias.corner_hz;
+  out.anti_alias_corner_hz = ReferenceLowPass::seen_behind(config.anti_alias).corner_hz;
   if (config.memory == Memory::kForgetting) out.memory_s = config.memory_s;
   if (config.memory == Memory::kWindow) out.memory_s = std::max(0.5 * config.memory_s, 2.0);
   return out;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The way of one frame, in the order in which it flows:
 //
-//   push(frame) -> assembler -> bridge -> placer -> guard -> judgement delay -> estimator (screen,
-//   motion, rows, sums)
+//   push(frame) -> assembler -> bridge -> placer -> guard -> judgement delay -> reference low pass
+//               -> estimator (screen, motion, rows, sums)
 //                                                        -> { effects | phase | density | alarms }
 //   snapshot(), faults(), alarms(), statistics(), explanation(): what is known, at any moment
 //
@@ -23,6 +23,7 @@
 #include "dampline/guard/alarm_watch.hpp"
 #include "dampline/guard/guard.hpp"
 #include "dampline/guard/judgement_delay.hpp"
+#include "dampline/motion/reference_low_pass.hpp"
 #include "dampline/phase/view.hpp"
 #include "dampline/result.hpp"
 #include "dampline/sample.hpp"
@@ -101,6 +102,7 @@ class BasicIdentifier {
         placer_{config.estimator.sample_rate_hz},
         guard_{guard_config(config)},
         delay_{delay_samples(config)},
+        low_pass_{config.estimator.anti_alias, config.estimator.sample_rate_hz},
         density_{density_config(config.estimator)},
         phase_{PhaseViewConfig{.sample_rate_hz = config.estimator.sample_rate_hz}},
         alarms_{config.estimator},
@@ -222,8 +224,9 @@ class BasicIdentifier {
   }
   template <class Observer>
   void use(const Sample& sample, Observer& observer) {
-    const UpdateResult result = estimator_.update(sample);
-    if constexpr (kParts.effects) effects_.update(sample, result);
+    const Sample& seen = low_pass_.update(sample);
+    const UpdateResult result = estimator_.update(seen);
+    if constexpr (kParts.effects) effects_.update(seen, result);
     if (result.has_motion) {
       if constexpr (kParts.phase) phase_.update(result.motion);
       if constexpr (kParts.densities) density_.update(result.motion);
@@ -240,6 +243,7 @@ class BasicIdentifier {
   If<kParts.guards, SamplePlacer> placer_;
   If<kParts.guards, Guard> guard_;
   If<kParts.guards, JudgementDelay> delay_;
+  ReferenceLowPass low_pass_;
   If<kParts.densities, FokkerPlanck> density_;
   If<kParts.phase, PhaseView> phase_;
   If<kParts.alarms, AlarmWatch> alarms_;

@@ -56,6 +56,47 @@ INSTANTIATE_TEST_SUITE_P(Rows, PlainSensorsTest,
                                          Sensing{"Fast", {.rate_hz = 1000.0, .corner_hz = 400.0}}),
                          [](const auto& sensing) { return std::string{sensing.param.name}; });
 
+class OpenLowPassTest : public testing::TestWithParam<Sensing> {};
+
+/// Behind a low pass that is open for what the rate folds, or so fast that nothing folds: the floor
+/// is what is left, no effect is named and no fault.
+TEST_P(OpenLowPassTest, HasNothingToExplain) {
+  for (const std::size_t which : {1U, 2U}) {
+    const PlainTruck& truck = kPlainTrucks.at(which);
+    const test::PlainExplained found =
+        test::explained_from(truck, GetParam().sensors, kSeconds, 9101);
+    const std::string of = truck.name + (": " + found.explanation.verdict);
+    EXPECT_FALSE(found.names_effect()) << of;
+    EXPECT_EQ(found.explanation.verdict, "complete") << of;
+    EXPECT_TRUE(found.result.faults.list.empty()) << of;
+    EXPECT_GT(found.explanation.left_over_floor, 0.55) << of;
+    EXPECT_LT(found.explanation.left_over_floor, 1.3) << of;
+    const Parameter& spring = parameter(found.result, "stiffness");
+    EXPECT_LE(std::abs(spring.value - truck.spring_npm), 3.0 * spring.std) << of;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rows, OpenLowPassTest,
+    testing::Values(Sensing{"At300", {}},
+                    Sensing{"At400Behind160", {.rate_hz = 400.0, .corner_hz = 160.0}},
+                    Sensing{"At600Behind240", {.rate_hz = 600.0, .corner_hz = 240.0}},
+                    Sensing{"At1000Behind400", {.rate_hz = 1000.0, .corner_hz = 400.0}},
+                    Sensing{"At1000Behind100", {.rate_hz = 1000.0}}),
+    [](const auto& sensing) { return std::string{sensing.param.name}; });
+
+/// Motion of the wheelsets that the sampling folds is not the noise that was declared.
+TEST(PlainSensorsNoise, IsNotExceededByWhatIsFolded) {
+  for (const PlainTruck& truck : kPlainTrucks) {
+    Config config = test::plain_config(truck, {});
+    config.input.noise_mps2 = {0.02, 0.02, 0.02};
+    const test::TemporaryFile file{test::plain_record(truck, {}, kSeconds, 33)};
+    const RunResult result =
+        identify_source(config, {file.path(), false}, SourceKind::kTruckRows, false).result;
+    EXPECT_TRUE(result.faults.list.empty()) << truck.name;
+  }
+}
+
 /// The node at 3 mm/s lies below 1.5 times the law's width there: the level all the same.
 TEST(PlainSensorsCurve, HoldsTheLevelAtItsSlowestNode) {
   const PlainTruck& truck = kPlainTrucks.front();

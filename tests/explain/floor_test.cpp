@@ -70,7 +70,7 @@ Floor floor_of(sim::Load load, double speed_kmh, const char* effect, double nois
   effect::SurrogateConfig settings;
   settings.stiffness_per_s2 = e.final_stiffness_npm.value / core.moving_mass_kg;
   settings.coulomb_mps2 = e.final_coulomb_n.value / core.moving_mass_kg;
-  settings.anti_alias_hz = core.anti_alias.corner_hz;
+  settings.input_low_pass_hz = settings.low_pass_hz = core.anti_alias.corner_hz;
   for (std::size_t c = 0; c < kChannels; ++c) {
     settings.step_mps2[c] = sim::count_scale_mps2(config.sensors.range_mps2[c]);
     const auto rounding = [&](std::size_t i) { return settings.step_mps2[i] / std::sqrt(12.0); };

@@ -316,5 +316,47 @@ TEST(BlockSurvey, ABlockThatDiffersCountsATwentieth) {
   EXPECT_NEAR(survey.figures().lag_s[0], 0.001, 1e-9) << "its own lag is taken out";
 }
 
+TEST(WhiteAndFolded, TellsAConstantFromAShape) {
+  for (const double white : {0.0, 0.3, 2.0}) {
+    WhiteAndFolded fit;
+    for (int k = 1; k <= 40; ++k) fit.add(1.0 / k, k * k, white + 0.07 * k * k);
+    EXPECT_NEAR(fit.white(), white, 1e-9);
+  }
+  WhiteAndFolded below;
+  for (int k = 1; k <= 40; ++k) below.add(1.0, k, k - 0.5);
+  EXPECT_EQ(below.white(), 0.0) << "no less than none";
+  WhiteAndFolded two;
+  two.add(3.0, 1.0, 5.0);
+  two.add(1.0, 1.0, 1.0);
+  EXPECT_NEAR(two.mean(), 4.0, 1e-12);
+  EXPECT_EQ(two.white(), 0.0) << "one shape alone tells nothing apart";
+}
+
+// Of a motion that falls as 1 / f^2 in acceleration, 4 % of what stands at the folded frequency is
+// not shared; of white noise nothing is taken for that.
+TEST(BlockSurvey, TellsWhatIsFoldedFromNoise) {
+  const AntiAliasConfig filter{.corner_hz = 100.0};
+  for (const double noise : {0.002, 0.02}) {
+    for (const double folded : {0.0, 1.0}) {
+      SpectrumSums sums = sums_of({});
+      for (std::size_t k = 146; k < kSpectrumBins; ++k) {
+        const double from_hz = kSurveyRateHz - kBinHz * static_cast<double>(k);
+        const double passed = 1.0 / (1.0 + std::pow(from_hz / 100.0, 8));
+        const double apart = noise + folded * passed * std::pow(150.0 / from_hz, 4);
+        sums.aligned[k] = 1.0 - apart;
+      }
+      const BlockFigures figures = survey_of(sums, filter);
+      const double both = figures.noise[1] + figures.noise[2];
+      EXPECT_NEAR((1.0 - figures.folded_share) * both, 2.0 * noise * kDensity,
+                  0.02 * noise * kDensity)
+          << noise << ' ' << folded;
+      EXPECT_EQ(figures.folded_share > 0.05, folded > 0.0);
+      EXPECT_EQ(survey_of(sums, {.corner_hz = 100.0, .thinned = true}).folded_share, 0.0);
+      EXPECT_EQ(survey_of(sums, {.corner_hz = 0.0}).folded_share, 0.0);
+      EXPECT_EQ(survey_of(sums, {.corner_hz = 140.0}).folded_share, 0.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dampline

@@ -45,9 +45,9 @@ TEST(Size, OfWhatIsReturnedIsBelow5KiB) {
 }
 
 // A part that is not wanted takes a byte and its alignment.
-TEST(Size, OfTheEstimateAloneIsThatOfTheEstimatorAndItsConfiguration) {
+TEST(Size, OfTheEstimateAloneIsThatOfEstimatorLowPassAndConfiguration) {
   EXPECT_LE(sizeof(BasicIdentifier<kEstimateParts>),
-            sizeof(Estimator) + sizeof(IdentifierConfig) + 16);
+            sizeof(Estimator) + sizeof(ReferenceLowPass) + sizeof(IdentifierConfig) + 16);
 }
 
 TEST(Statistics, CanBeCopiedByteByByte) { EXPECT_TRUE(std::is_trivially_copyable_v<Statistics>); }

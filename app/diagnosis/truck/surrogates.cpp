@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dampline::app {
 namespace {
@@ -10,18 +11,31 @@ namespace {
 constexpr double kOneKind = 3.0;      // of powers of noise
 constexpr double kNoiseDoubt = 1.25;  // of the guards' median, which bursts do not lift
 
+double rounding(double step_mps2) { return step_mps2 * step_mps2 / 12.0; }  // mean square
+
 /// What the wheelsets do not share counts as their noise, and aliasing adds to it. Where sensors
 /// may be of one kind, the frame's noise, which is measured apart from its motion, is that of all.
 std::array<double, kChannels> noise_of(std::array<double, kChannels> seen_mps2,
                                        const std::array<double, kChannels>& step_mps2) {
-  const auto rounding = [&](std::size_t c) { return step_mps2[c] * step_mps2[c] / 12.0; };
-  const double frame = seen_mps2[0] * seen_mps2[0] - rounding(0);
+  const double frame = seen_mps2[0] * seen_mps2[0] - rounding(step_mps2[0]);
   for (std::size_t c = 1; c < kChannels; ++c) {
-    const double own = seen_mps2[c] * seen_mps2[c] - rounding(c);
-    if (frame > 0.0 && own > frame && own < kOneKind * frame)
-      seen_mps2[c] = std::sqrt(frame + rounding(c));
+    const double own = seen_mps2[c] * seen_mps2[c] - rounding(step_mps2[c]);
+    if (frame > 0.0 && own < kOneKind * frame)
+      seen_mps2[c] = std::sqrt(frame + rounding(step_mps2[c]));
   }
   return seen_mps2;
+}
+
+/// Noise of a frame where leaps of friction fill the band that should tell it, as behind a low pass
+/// that is open up to half the rate: that of wheelsets' sensors of the same kind.
+double frame_of_their_kind(const std::array<double, kChannels>& seen_mps2,
+                           const std::array<double, kChannels>& step_mps2) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 1; c < kChannels; ++c) {
+    const double white = seen_mps2[c] * seen_mps2[c] - rounding(step_mps2[c]);
+    least = std::min(least, std::max(white, 0.0));
+  }
+  return std::sqrt(least + rounding(step_mps2[0]));
 }
 
 }  // namespace
@@ -38,6 +52,7 @@ RecordNoise noise_of_record(const GuardedNoise& guarded, const FrameNoise& frame
   const double whole = of_sensor(frame.noise_mps2(), 0);
   if (seen[0] > 0.0 && whole > 0.0)
     seen[0] = std::clamp(whole, seen[0] / kNoiseDoubt, kNoiseDoubt * seen[0]);
+  if (seen[0] == 0.0 && whole == 0.0) seen[0] = frame_of_their_kind(seen, step_mps2);
   return {noise_of(seen, step_mps2), guarded.bridged.error_mps2};
 }
 
@@ -50,7 +65,8 @@ effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effe
   out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
   if (e.base_count > 0)
     out.viscous_per_s = std::max(e.final.theta[effect::ModelFit::kFirstEffect], 0.0);
-  out.anti_alias_hz = core.anti_alias.corner_hz;
+  out.input_low_pass_hz = core.anti_alias.corner_hz;
+  out.low_pass_hz = ReferenceLowPass::seen_behind(core.anti_alias).corner_hz;
   out.noise_mps2 = noise.sensors_mps2;
   out.bridged_mps2 = noise.bridged_mps2;
   out.step_mps2 = core.screen.step_mps2;

@@ -8,6 +8,7 @@
 #include "dampline/effect/explainer.hpp"
 #include "dampline/effect/surrogate.hpp"
 #include "dampline/motion/frame_noise.hpp"
+#include "dampline/motion/reference_low_pass.hpp"
 
 namespace dampline::app {
 
@@ -43,6 +44,12 @@ struct RecordNoise {
 [[nodiscard]] effect::SurrogateConfig with_memory(effect::SurrogateConfig out,
                                                   const effect::Explanation& e);
 
+/// What identifies it: the same, told that it is behind the reference low pass already.
+[[nodiscard]] inline EstimatorConfig behind_low_pass(EstimatorConfig core) noexcept {
+  core.anti_alias = ReferenceLowPass::seen_behind(core.anti_alias);
+  return core;
+}
+
 [[nodiscard]] bool is_physical(const effect::SurrogateConfig& config);
 
 /// The surrogate through the same estimator. Some 8 MB.
@@ -50,7 +57,7 @@ class SurrogatePass {
  public:
   SurrogatePass(const EstimatorConfig& core, const effect::SurrogateConfig& config,
                 const effect::Grids& grids)
-      : surrogate_{config}, run_{IdentifierConfig{.estimator = core}, grids} {}
+      : surrogate_{config}, run_{IdentifierConfig{.estimator = behind_low_pass(core)}, grids} {}
   void take(const Sample& sample) {
     if (const auto surrogate = surrogate_.next(sample)) run_.push(*surrogate);
   }

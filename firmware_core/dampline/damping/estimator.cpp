@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dampline/damping/summary.hpp"
+#include "dampline/motion/reference_low_pass.hpp"
 #include "dampline/numeric/wide.hpp"
 
 namespace dampline {
@@ -81,11 +82,14 @@ BasicEstimator<Kind>::BasicEstimator(const EstimatorConfig& config) noexcept
       step_s_{1.0 / config.sample_rate_hz},
       block_ticks_{std::lround(kBlockS * config.sample_rate_hz)},
       screen_{screen_config(config)},
-      lift_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps()},
+      lift_{VelocityLift{ReferenceLowPass::seen_behind(config.anti_alias), config.sample_rate_hz}
+                .taps()},
       velocity_{config.sample_rate_hz},
       deflection_{config.sample_rate_hz},
       law_{config.curve_nodes_mps},
-      turn_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps(), config.sample_rate_hz},
+      turn_{VelocityLift{ReferenceLowPass::seen_behind(config.anti_alias), config.sample_rate_hz}
+                .taps(),
+            config.sample_rate_hz},
       rows_{config.sample_rate_hz},
       store_{{.memory = config.memory, .memory_blocks = config.memory_s / kBlockS}} {
   far_share_ = config.far_mass_kg / config.moving_mass_kg;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/motion/reference_low_pass.hpp"
+
 namespace dampline::effect {
 namespace {
 
@@ -26,7 +28,8 @@ Grids scaled(Grids grids, double scale_m) noexcept {
 Diagnosis::Diagnosis(const EstimatorConfig& config, const Grids& grids) noexcept
     : sample_rate_hz_{config.sample_rate_hz},
       block_ticks_{std::lround(Estimator::kBlockS * config.sample_rate_hz)},
-      lift_{VelocityLift{config.anti_alias, config.sample_rate_hz}.taps()},
+      lift_{VelocityLift{ReferenceLowPass::seen_behind(config.anti_alias), config.sample_rate_hz}
+                .taps()},
       pitch_share_{config.frame_pitch_mass_kg / config.moving_mass_kg},
       raw_{config.sample_rate_hz, config.far_mass_kg / config.moving_mass_kg,
            config.frame_pitch_mass_kg > 0.0},

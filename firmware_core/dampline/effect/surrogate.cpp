@@ -13,20 +13,20 @@ namespace {
 
 constexpr double kLawWidthMps = 5e-4;  // sign v as tanh(v / width)
 constexpr double kRamp = 0.05;         // of a gap: where the force rises
-constexpr double kMostGivenBack = 2.0;
+constexpr double kMostGivenBack = 4.0;
 constexpr std::size_t kDesignBins = 512;
 constexpr std::uint64_t kStream = 3;  // of random numbers
 constexpr double kSteepest = 0.8;     // slope times step that Runge-Kutta is trusted with
 
 ButterworthLowPass<kChannels> filter_of(const SurrogateConfig& config, int fine) {
-  return {config.anti_alias_hz > 0.0 ? config.anti_alias_hz : 1.0, fine * config.sample_rate_hz};
+  return {config.low_pass_hz > 0.0 ? config.low_pass_hz : 1.0, fine * config.sample_rate_hz};
 }
 
 /// What the sensors' filter took of a motion, to be given back: the surrogate is seen through it
 /// again.
 double given_back(const SurrogateConfig& config, double f_hz) {
-  if (config.anti_alias_hz <= 0.0) return 1.0;
-  return std::min(std::sqrt(butterworth_loss(f_hz / config.anti_alias_hz, 4)), kMostGivenBack);
+  if (config.input_low_pass_hz <= 0.0) return 1.0;
+  return std::min(std::sqrt(butterworth_loss(f_hz / config.input_low_pass_hz, 4)), kMostGivenBack);
 }
 
 bool is_number(const Sample& sample) {
@@ -169,7 +169,7 @@ std::optional<Sample> Surrogate::next(const Sample& sample) {
     for (int p = 0; p < parts_; ++p)
       step(from + (to - from) * p / parts_, from + (to - from) * (p + 1) / parts_, fine_s / parts_);
     const std::array<double, kChannels> accel{frame_mps2(motion_), now[0], now[1]};
-    filtered = config_.anti_alias_hz > 0.0 ? filter_.update(accel) : accel;
+    filtered = config_.low_pass_hz > 0.0 ? filter_.update(accel) : accel;
     last = now;
   }
   return seen(filtered);

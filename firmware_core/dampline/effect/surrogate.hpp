@@ -25,7 +25,8 @@ struct SurrogateConfig {
   double stiffness_per_s2{0.0};  ///< k / M
   double viscous_per_s{0.0};     ///< c / M
   FrictionMemory memory{};
-  double anti_alias_hz{0.0};                     ///< 0: none
+  double input_low_pass_hz{0.0};                 ///< of the record; 0: none
+  double low_pass_hz{0.0};                       ///< that it is seen through; 0: none
   std::array<double, kChannels> noise_mps2{};    ///< rms, what the resolution makes included
   std::array<double, kChannels> step_mps2{};     ///< resolution; 0: unknown
   std::array<double, kChannels> bridged_mps2{};  ///< error of values that were put in, rms

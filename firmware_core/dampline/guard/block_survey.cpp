@@ -22,6 +22,8 @@ constexpr double kHannPower = 0.375;  // mean square of the window
 constexpr double kCoherent = 0.4;
 constexpr std::size_t kButterfliesSlice = 96;
 constexpr double kMostWeight = 50.0;
+constexpr double kShakenHz = 85.0;     // below, wheelsets shake most, and not as 1 / f^2
+constexpr double kLeastFolded = 0.45;  // corner, of the rate: then little of a slope is left
 
 using Complex = std::complex<double>;
 
@@ -91,6 +93,8 @@ void LagTracker::learn(std::size_t k, const Bin& bin) noexcept {
 BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alias) noexcept
     : rate_hz_{sample_rate_hz},
       bin_hz_{sample_rate_hz / static_cast<double>(Fourier512::kSize)},
+      folds_{!anti_alias.thinned && anti_alias.corner_hz > 0.0 &&
+             anti_alias.corner_hz < kLeastFolded * sample_rate_hz},
       shared_{band(4.0, 0.3 * sample_rate_hz)},
       follow_{band(1.1, 1.6)},
       fast_{band(40.0, 0.333 * sample_rate_hz)},
@@ -98,11 +102,17 @@ BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alia
       middle_{band(0.15 * sample_rate_hz, 0.283 * sample_rate_hz)},
       noise_{band(0.333 * sample_rate_hz, edge_of(anti_alias) * sample_rate_hz)},
       incoherent_{band(0.367 * sample_rate_hz, 0.42 * sample_rate_hz)},
+      apart_{band(std::clamp(kShakenHz, 0.283 * sample_rate_hz, 0.333 * sample_rate_hz),
+                  0.45 * sample_rate_hz)},
       edge_{band((edge_of(anti_alias) - 0.03) * sample_rate_hz,
                  edge_of(anti_alias) * sample_rate_hz)},
       lags_{LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}} {
-  for (std::size_t k = 1; k < kSpectrumBins; ++k)
+  for (std::size_t k = 1; k < kSpectrumBins; ++k) {
     alias_shape_[k] = leap_power(anti_alias, hz(k), rate_hz_);
+    // The contact patch lets a wheelset's acceleration fall as 1 / f^2.
+    const double from_hz = rate_hz_ - hz(k);
+    folded_shape_[k] = passed_power(anti_alias, from_hz) / (from_hz * from_hz);
+  }
 }
 
 void BlockSurvey::start(const SpectrumSums& sums) noexcept {
@@ -180,13 +190,7 @@ void BlockSurvey::power(std::size_t k) noexcept {
     s_.follow_weight += b.mean[k];
   }
   if (noise_.holds(k)) {
-    const double weight = 1.0 / (b.frame[k] + kTiny);
-    const double g = alias_shape_[k];
-    s_.ww += weight;
-    s_.wg += weight * g;
-    s_.wgg += weight * g * g;
-    s_.wy += weight * b.frame[k];
-    s_.wgy += weight * g * b.frame[k];
+    s_.frame.add(1.0 / (b.frame[k] + kTiny), alias_shape_[k], b.frame[k]);
   }
   if (middle_.holds(k)) {
     s_.middle += std::sqrt(b.delayed1[k] * b.wheelset2[k]);
@@ -198,6 +202,13 @@ void BlockSurvey::power(std::size_t k) noexcept {
     s_.fast[0] += weight * b.delayed1[k];
     s_.fast[1] += weight * b.wheelset2[k];
     s_.fast_weight += weight;
+  }
+  if (apart_.holds(k)) {
+    const double power = std::sqrt(b.delayed1[k] * b.wheelset2[k]);
+    const double alike = s_.shared_middle / (s_.middle + kTiny);
+    // It scatters in proportion to itself, and what is folded is most of it.
+    s_.apart.add(1.0 / folded_shape_[k], folded_shape_[k],
+                 std::min(alike, 1.0) * power - std::sqrt(std::norm(b.aligned[k])));
   }
   if (edge_.holds(k)) {
     s_.edge[0] += b.wheelset1[k];
@@ -219,19 +230,28 @@ void BlockSurvey::conclude_power() noexcept {
   figures_.wheelset_mps2 = std::sqrt(0.5 * density * bin_hz_ * (s_.power1 + s_.power2));
   figures_.follow = s_.follow;
   figures_.following = 0.5 * (s_.follow[0] + s_.follow[1]) / (s_.follow_weight + kTiny);
-  const double determinant = s_.ww * s_.wgg - s_.wg * s_.wg;
-  const double constant = (s_.wgg * s_.wy - s_.wg * s_.wgy) / (determinant + kTiny);
-  figures_.noise[0] = density * std::max(constant, 0.0);
+  figures_.noise[0] = density * s_.frame.white();
+  figures_.frame_in_band = density * s_.frame.mean();
   conclude_noise(density);
 }
 
+double WhiteAndFolded::white() const noexcept {
+  const double determinant = w * wgg - wg * wg;
+  return std::max((wgg * wy - wg * wgy) / (determinant + kTiny), 0.0);
+}
+
+double WhiteAndFolded::mean() const noexcept { return wy / (w + kTiny); }
+
 // White noise of the wheelsets is what they do not share at 110-126 Hz, less the share that they do
-// not have in common at 45-85 Hz either, where noise is small beside the motion. Its sum for both
-// scatters little; it goes to that wheelset which has the more power on its own.
+// not have in common at 45-85 Hz either, where noise is small beside the motion. A part of that has
+// the shape of motion that is folded at half the rate. Its sum for both scatters little; it goes to
+// that wheelset which has the more power on its own.
 void BlockSurvey::conclude_noise(double density) noexcept {
   figures_.incoherent_share = 1.0 - std::min(s_.shared_middle / (s_.middle + kTiny), 1.0);
   const double not_shared = (1.0 - figures_.incoherent_share) * incoherent_.bins() - s_.shared_fast;
   const double both = 2.0 * std::max(not_shared, 0.0) / (s_.fast_weight + kTiny);
+  figures_.folded_share =
+      folds_ ? std::max(1.0 - 2.0 * s_.apart.white() / (both + kTiny), 0.0) : 0.0;
   const double gain = std::exp(figures_.log_gain);
   std::array<double, 2> own{};
   for (std::size_t i = 0; i < 2; ++i) {

@@ -90,8 +90,26 @@ struct BlockFigures {
   /// that differ, not noise.
   double incoherent_share{0.0};
   std::array<double, kChannels> noise{};  ///< white part, (m/s^2)^2/Hz
+  double folded_share{0.0};   ///< of the wheelsets' noise: motion that is folded at half the rate
+  double frame_in_band{0.0};  ///< all of the frame where its noise is looked for, (m/s^2)^2/Hz
   /// What a wheelset does not share at 110-126 Hz and is not noise, (m/s^2)^2/Hz.
   double incoherent{0.0};
+};
+
+/// A constant and a multiple of a shape, by weighted least squares.
+struct WhiteAndFolded {
+  double w{0.0}, wg{0.0}, wgg{0.0}, wy{0.0}, wgy{0.0};
+  void add(double weight, double shape, double value) noexcept {
+    w += weight;
+    wg += weight * shape;
+    wgg += weight * shape * shape;
+    wy += weight * value;
+    wgy += weight * shape * value;
+  }
+  /// At least 0; 0 where they cannot be told apart.
+  [[nodiscard]] double white() const noexcept;
+  /// Weighted mean of the values.
+  [[nodiscard]] double mean() const noexcept;
 };
 
 /// Turns the sums of a block into its figures, a few bins a call.
@@ -124,9 +142,10 @@ class BlockSurvey {
     double frame_fast{0.0}, wheelset_fast{0.0};
     std::array<double, 2> follow{};
     double follow_weight{0.0};
-    double ww{0.0}, wg{0.0}, wgg{0.0}, wy{0.0}, wgy{0.0};  // frame's noise and its aliased part
-    std::array<double, 2> fast{}, edge{};                  // of the wheelsets
+    WhiteAndFolded frame;
+    std::array<double, 2> fast{}, edge{};  // of the wheelsets
     double shared_fast{0.0}, fast_weight{0.0};
+    WhiteAndFolded apart;                    // of what the wheelsets do not share
     double middle{0.0}, shared_middle{0.0};  // of both wheelsets
   };
 
@@ -146,8 +165,10 @@ class BlockSurvey {
 
   double rate_hz_;
   double bin_hz_;
-  SpectrumBand shared_, follow_, fast_, lag_, middle_, noise_, incoherent_, edge_;
-  std::array<double, kSpectrumBins> alias_shape_{};
+  bool folds_;  // and it is known how
+  SpectrumBand shared_, follow_, fast_, lag_, middle_, noise_, incoherent_, apart_, edge_;
+  std::array<double, kSpectrumBins> alias_shape_{};   // of friction's leaps: what is folded, too
+  std::array<double, kSpectrumBins> folded_shape_{};  // of the wheelsets' motion
   const SpectrumSums* block_{nullptr};
   Stage stage_{Stage::kDone};
   std::size_t cursor_{0};

@@ -30,6 +30,8 @@ constexpr std::array<double, 2> kBurstRatio{6.0, 10.0};  // frame, wheelsets: th
 // Over the median, of the scatter of one block. A filter with a high corner leaves friction's own
 // fast part in the band, and the noise beside it may come out as nothing in half of the blocks.
 constexpr double kBurstScatter = 8.0;
+constexpr double kLeastRise = 0.75;  // of the band's power, of a burst's
+constexpr double kRiseScatter = 4.0;
 constexpr double kNoisy = 4.0;  // over the usual noise of the wheelsets: no block to judge gain by
 constexpr double kWhite = 1.4;
 // Of the wheelsets' incoherent power: it is known that well in many blocks and in one.
@@ -230,8 +232,8 @@ FrameFollow SpectralGuard::frame_follow() const noexcept {
 }
 
 double SpectralGuard::noise_mps2(std::size_t channel) const noexcept {
-  const bool both = channel > 0 && noise_[1].size() > 0;
-  const BlockSeries& series = noise_[both ? 1 : 0];
+  const bool both = channel > 0 && white_.size() > 0;
+  const BlockSeries& series = both ? white_ : noise_[0];
   if (series.size() == 0) return 0.0;
   const double density = series.median() * (both ? 0.5 : 1.0);
   return std::sqrt(0.5 * density * config_.sample_rate_hz);
@@ -261,7 +263,8 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
         bridged_.noise_mps2[c] * bridged_.noise_mps2[c] / (0.5 * config_.sample_rate_hz);
     const double not_noise =
         kBridgeDoubt * bridged + (c > 0 ? kLevelDoubt * block.incoherent + impulses : 0.0);
-    level_[c].add(std::max(block.noise[c] - not_noise, 0.0), middle);
+    const double own = block.noise[c] * (c > 0 ? 1.0 - block.folded_share : 1.0);
+    level_[c].add(std::max(own - not_noise, 0.0), middle);
     if (config_.noise_mps2[c] <= 0.0 || level_[c].size() < kNoiseBlocks[c]) continue;
     const BlockSeries newest = level_[c].newest(kNoiseBlocks[c] + 1);
     if (c > 0 && log.has(FaultKind::kSoftSaturation)) continue;  // it makes overtones
@@ -275,17 +278,28 @@ void SpectralGuard::judge_noise(FaultLog& log) noexcept {
       log.report(FaultKind::kExcessNoise, channel_of(c), log.seconds(newest.tick(0)), noise_mps2);
     }
   }
-  add_noise(0, block.noise[0], middle);
-  const double both = block.noise[1] + block.noise[2] - kBurstDoubt * block.incoherent;
-  if (few_impacts_[1] && few_impacts_[2] && steady_) add_noise(1, std::max(both, 0.0), middle);
+  add_noise(noise_[0], kBurstRatio[0], block.noise[0], middle);
+  frame_in_band_.add(block.frame_in_band, middle);
+  if (!few_impacts_[1] || !few_impacts_[2] || !steady_) return;
+  const double own = block.noise[1] + block.noise[2];
+  const double doubt = kBurstDoubt * block.incoherent;
+  add_noise(noise_[1], kBurstRatio[1], std::max(own - doubt, 0.0), middle);
+  add_noise(white_, kBurstRatio[1], std::max((1.0 - block.folded_share) * own - doubt, 0.0),
+            middle);
 }
 
 // Values that were put in are off by more now and then: they make no burst.
-void SpectralGuard::add_noise(std::size_t which, double power, std::int64_t tick) noexcept {
-  BlockSeries& series = noise_[which];
+void SpectralGuard::add_noise(BlockSeries& series, double most, double power,
+                              std::int64_t tick) const noexcept {
   if (bridged_.share > HoleBridge::kMany && series.size() > 0)
-    power = std::min(power, kBurstRatio[which] * series.median());
+    power = std::min(power, most * series.median());
   series.add(power, tick);
+}
+
+// Noise that comes adds to all that is in its band; what is only told apart otherwise does not.
+bool SpectralGuard::rises_with(double noise, std::size_t block) const noexcept {
+  const double rise = frame_in_band_[block] - frame_in_band_.median();
+  return rise > kLeastRise * noise && rise > kRiseScatter * frame_in_band_.scatter();
 }
 
 void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
@@ -298,6 +312,7 @@ void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
   // The newest waits: what else spoils it may not be known yet.
   for (std::size_t i = 0; i + 1 < series.size(); ++i) {
     if (series[i] <= limit || series.tick(i) <= burst_tick_[which]) continue;
+    if (which == 0 && !rises_with(series[i] - usual, i)) continue;
     burst_tick_[which] = series.tick(i);
     const auto half = PairSpectra::kHop * std::int64_t{PairSpectra::kSegmentsPerBlock + 1} / 2;
     if (log.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;

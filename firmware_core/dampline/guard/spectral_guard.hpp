@@ -67,7 +67,8 @@ class SpectralGuard {
   [[nodiscard]] bool is_noisy(const BlockFigures& block) const noexcept;
   void judge_noise(FaultLog& log) noexcept;
   void count_impacts(const GuardInputs& inputs) noexcept;
-  void add_noise(std::size_t which, double power, std::int64_t tick) noexcept;
+  void add_noise(BlockSeries& series, double most, double power, std::int64_t tick) const noexcept;
+  [[nodiscard]] bool rises_with(double noise, std::size_t block) const noexcept;
   void judge_burst(FaultLog& log, std::size_t which) noexcept;
   [[nodiscard]] double noise_limit(std::size_t channel) const noexcept;  // density
 
@@ -79,6 +80,8 @@ class SpectralGuard {
   BlockSeries gain_;
   BlockSeries following_;
   std::array<BlockSeries, 2> noise_{};  // of the frame; of both wheelsets together
+  BlockSeries white_{};                 // of both wheelsets, without what is folded
+  BlockSeries frame_in_band_{};
   std::array<std::int64_t, 2> burst_tick_{-1, -1};
   std::array<BlockSeries, kChannels> level_{};
   std::array<double, kChannels> change_mps2_{};

@@ -25,12 +25,13 @@ double lift(double relative, int order, double share, double beyond) noexcept {
 
 }  // namespace
 
-double VelocityLift::share_of_loss(double corner_hz) noexcept {
+double VelocityLift::share_of_loss(const AntiAliasConfig& filter) noexcept {
+  constexpr double kThinned = 0.75;
   constexpr double kHighCornerHz = 100.0;
   constexpr double kLowCornerHz = 76.0;
   const double low =
-      std::clamp((kHighCornerHz - corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
-  return std::lerp(0.22, 1.0, low);
+      std::clamp((kHighCornerHz - filter.corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
+  return std::lerp(filter.thinned ? kThinned : 0.22, 1.0, low);
 }
 
 VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz) noexcept {
@@ -38,7 +39,7 @@ VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz)
   if (!(config.corner_hz > 0.0)) return;
   const double corner = config.corner_hz / sample_rate_hz;
   const double edge = std::fmin(corner, kHighestLifted);
-  const double share = share_of_loss(config.corner_hz);
+  const double share = share_of_loss(config);
   // Least squares over the cosines of a symmetric filter, exact at zero frequency.
   using Basis = Eigen::Matrix<double, kHalf + 1, 1>;
   Eigen::Matrix<double, kHalf + 1, kHalf + 1> normal;

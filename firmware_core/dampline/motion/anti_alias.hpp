@@ -23,21 +23,23 @@ inline constexpr double kThinnedEdge = 0.455;
   return 1.0 + std::pow(relative, 2 * order);
 }
 
-/// The power of friction's leaps at a frequency, up to a factor, as it is sampled: that of 1 / f
-/// behind the filter, and what is folded into it.
+/// The power of an acceleration that falls as 1 / f, up to a factor, behind the filter.
+[[nodiscard]] inline double passed_power(const AntiAliasConfig& filter, double hz) noexcept {
+  const bool known = filter.corner_hz > 0.0;
+  const double passed = known ? 1.0 / butterworth_loss(hz / filter.corner_hz, filter.order) : 1.0;
+  return passed / (hz * hz);
+}
+/// That of friction's leaps, as they are sampled: with what is folded into it.
 [[nodiscard]] inline double leap_power(const AntiAliasConfig& filter, double f_hz,
                                        double sample_rate_hz) noexcept {
-  const auto power = [&](double hz) {
-    const bool known = filter.corner_hz > 0.0;
-    const double passed = known ? 1.0 / butterworth_loss(hz / filter.corner_hz, filter.order) : 1.0;
-    return passed / (hz * hz);
-  };
-  return power(f_hz) + (filter.thinned ? 0.0 : power(sample_rate_hz - f_hz));
+  return passed_power(filter, f_hz) +
+         (filter.thinned ? 0.0 : passed_power(filter, sample_rate_hz - f_hz));
 }
 
 /// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter
-/// has lowered, by a share of the loss in decibels, up to the corner: 22 % from 100 Hz on, more
-/// below, all of it from 70 Hz down, since wheelsets shake most between 45 and 75 Hz.
+/// has lowered, by a share of the loss in decibels, up to the corner: 22 % at 100 Hz, 75 % where
+/// nothing is folded, more below, all of it from 76 Hz down, since wheelsets shake most between 45
+/// and 75 Hz.
 ///
 /// What is linear in the accelerations commutes with the anti-aliasing filter and needs nothing;
 /// friction does not. Left alone, sign(v) of a velocity without its fast part puts the friction
@@ -48,7 +50,7 @@ inline constexpr double kThinnedEdge = 0.455;
 class VelocityLift {
  public:
   static constexpr int kHalf = 12;
-  static double share_of_loss(double corner_hz) noexcept;  ///< of the decibels
+  static double share_of_loss(const AntiAliasConfig& filter) noexcept;  ///< of the decibels
   using Taps = std::array<double, 2 * kHalf + 1>;
 
   VelocityLift(const AntiAliasConfig& config, double sample_rate_hz) noexcept;
