@@ -135,10 +135,9 @@ std::string verdict_section(const Evidence& evidence) {
   const double floor = number_at(json, "floor_nmse");
   if (floor > 0.0 && json.contains("final"))
     out += fmt::format(
-        "<p>The sensors and the law's rounding alone would leave an nmse of {:.4g}: what is left "
-        "is "
-        "{:.2f} times that.</p>\n",
-        floor, number_at(json, "left_over_floor"));
+        "<p>A complete model would leave an nmse of {:.4g} ({}): what is left is {:.2f} times "
+        "that.</p>\n",
+        floor, escape_html(word_at(json, "floor_by")), number_at(json, "left_over_floor"));
   if (json.contains("signature") && !word_at(json.at("signature"), "text").empty())
     out += fmt::format("<p>What is left: {}.</p>\n",
                        escape_html(word_at(json.at("signature"), "text")));

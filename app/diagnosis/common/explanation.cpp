@@ -213,9 +213,8 @@ std::string step_text(const Step& step) {
 std::string floor_text(const Explanation& e) {
   std::string text = "floor  not known: whether more is left than sensors make is not judged\n";
   if (e.floor_nmse > 0.0)
-    text =
-        fmt::format("floor  nmse {:.4g} by sensors and rounding alone; left: {:.2f} times that\n",
-                    e.floor_nmse, e.left_over_floor);
+    text = fmt::format("floor  nmse {:.4g} by {}; left: {:.2f} times that\n", e.floor_nmse,
+                       e.floor_by, e.left_over_floor);
   if (e.law_incomplete && !e.steps.empty())
     text += fmt::format("       {}\n", note_of(e.steps.front().effect));
   if (!e.alike.empty()) text += fmt::format("alike  {}\n", e.alike);
@@ -306,6 +305,7 @@ std::string to_json(const Explanation& e) {
                     {"rejected", judged_json(e.rejected)},
                     {"alike", e.alike.empty() ? Json(nullptr) : Json(e.alike)},
                     {"floor_nmse", known(e.floor_nmse)},
+                    {"floor_by", e.floor_by},
                     {"left_over_floor", known(e.left_over_floor)},
                     {"held_out", e.held_out},
                     {"filter_hz", known(e.filter_hz)},

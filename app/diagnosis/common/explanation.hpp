@@ -76,16 +76,17 @@ struct Explanation {
   ModelFound base;
   ModelFound final;
   std::vector<Step> steps;
-  std::vector<JudgedCandidate> rejected;  ///< the best of the round that added nothing
-  double floor_nmse{0.0};                 ///< what a complete model leaves; 0: unknown
-  double left_over_floor{0.0};            ///< what is left, over that; 0: unknown
-  bool law_incomplete{false};             ///< more is left than the first step's law would leave
-  bool unknown{false};                    ///< something real is left that has no name
-  std::string alike;                      ///< effects that explain alike: none is named; or empty
-  std::string held_out{"blocks"};         ///< or "records"
-  double filter_hz{0.0};                  ///< corner of the filter before every error; 0: none
-  std::string force;                      ///< what force is meant
-  FreeRunError free_run;                  ///< of a driven mass
+  std::vector<JudgedCandidate> rejected;               ///< the best of the round that added nothing
+  double floor_nmse{0.0};                              ///< what a complete model leaves; 0: unknown
+  std::string floor_by{"sensors and rounding alone"};  ///< what leaves it
+  double left_over_floor{0.0};                         ///< what is left, over that; 0: unknown
+  bool law_incomplete{false};      ///< more is left than the first step's law would leave
+  bool unknown{false};             ///< something real is left that has no name
+  std::string alike;               ///< effects that explain alike: none is named; or empty
+  std::string held_out{"blocks"};  ///< or "records"
+  double filter_hz{0.0};           ///< corner of the filter before every error; 0: none
+  std::string force;               ///< what force is meant
+  FreeRunError free_run;           ///< of a driven mass
   std::vector<Validated> validation;
   std::vector<FaultFinding> faults;
   std::vector<std::string> notes;  ///< how the records were read, a sentence each

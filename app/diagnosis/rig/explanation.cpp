@@ -196,6 +196,7 @@ app::Explanation found_in(const Explanation& e) {
   out.steps = e.steps;
   out.rejected = e.rejected;
   out.floor_nmse = e.final.floor_nmse;
+  out.floor_by = e.final.floor_by;
   out.left_over_floor = e.final.left_over_floor();
   out.unknown = out.law_incomplete = !e.is_complete();
   out.alike = e.alike;

@@ -35,6 +35,7 @@ struct Model {
   law::Document law;              ///< of a final model: law.json
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
   double floor_noise_share{0.0};  ///< of it, what the noise of the force makes
+  const char* floor_by{""};       ///< what makes it
   /// What is left, over that.
   [[nodiscard]] double left_over_floor() const noexcept {
     return floor_nmse > 0.0 ? fit.held_out_nmse / floor_nmse : 0.0;

@@ -278,6 +278,9 @@ void find_floor(const State& s, Explanation& out) {
   double reached = out.final.fit.held_out_nmse;
   if (rich.ok) reached = std::min(reached, rich.held_out_nmse);
   out.final.floor_nmse = std::min(floor.nmse, reached);
+  out.final.floor_by = reached < floor.nmse              ? "the best law of the library"
+                       : floor.noise_share > kStructured ? "the force's noise"
+                                                         : "errors of the measured motion";
   out.final.floor_noise_share =
       std::min(1.0, floor.noise_share * floor.nmse / std::max(out.final.floor_nmse, 1e-300));
   // Noise of a force cell need not be white. What is Gaussian, as loud at any time and in any
@@ -288,6 +291,7 @@ void find_floor(const State& s, Explanation& out) {
   if (!rich.ok || rich.held_out_nmse < kUntouched * out.final.fit.held_out_nmse) return;
   out.final.floor_nmse = left.nmse;
   out.final.floor_noise_share = 1.0;
+  out.final.floor_by = "the force's noise";
   out.notes.push_back(fmt::format(
       "What is left away from the reversals, {:.4g} N rms, is Gaussian, as loud at any time and "
       "speed, and nothing that the motion predicts: it counts as noise of the force, though it is "
