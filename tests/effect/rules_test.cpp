@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+#include <utility>
+
 namespace dampline::effect {
 namespace {
 
@@ -90,6 +94,30 @@ TEST(Rules, SpringsMayBeTheProductOfTwoFrictions) {
   const Step spring = step(Effect::kAsymmetricStiffness, 0.11, 25.0, 40.0);
   EXPECT_EQ(judge_step(both, false, true, spring), Verdict::kStop);
   EXPECT_EQ(later(Effect::kPreslidingHysteresis, spring), Verdict::kYes);
+}
+
+/// Improvements of so many entries whose mean is `t` times its deviation.
+double block_t_of(std::size_t entries, double t) {
+  const auto before = std::make_unique<ModelFit>();
+  const auto after = std::make_unique<ModelFit>();
+  const auto n = static_cast<double>(entries);
+  for (std::size_t e = 0; e < entries; ++e) {
+    const double off = e % 2 == 0 ? 1.0 : -1.0;
+    before->held_out_error[e] = off * std::sqrt((n - 1.0) / n) + t / std::sqrt(n);
+  }
+  return block_t(*before, *after, entries);
+}
+
+// Tables of Student's distribution: 2.262, 3.250 and 4.781 with nine degrees of freedom are as rare
+// as 1.960, 2.576 and 3.291 of a normal one.
+TEST(BlockT, CountsFewEntriesByTheirRarity) {
+  for (const auto& [student, normal] :
+       {std::pair{2.262, 1.960}, std::pair{3.250, 2.576}, std::pair{4.781, 3.291}}) {
+    EXPECT_NEAR(block_t_of(10, student) / normal, 1.0, 0.005);
+    EXPECT_NEAR(block_t_of(10, -student) / -normal, 1.0, 0.005);
+    EXPECT_NEAR(block_t_of(16, student), student, 1e-9) << "as the rules were calibrated";
+  }
+  EXPECT_EQ(block_t_of(10, 0.0), 0.0);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ constexpr double kFaintT = 2.5;
 constexpr double kFaintFrictionGain = 0.0015;  // with kFaintFrictionT and kFaintFrictionZ
 constexpr double kFaintFrictionT = 1.5;
 constexpr double kFaintFrictionZ = 12.0;
+constexpr std::size_t kManyEntries = 16;  // of blocks, with which the rules were calibrated
 
 template <class Test>
 bool has_any(const Model& model, const Test& test) noexcept {
@@ -126,6 +127,13 @@ bool is_faint_friction(const Step& step) noexcept {
          step.block_t > kFaintFrictionT && step.coefficient_t > kFaintFrictionZ;
 }
 
+/// The normal deviate that is as rare as Student's t (Wallace 1959, Bounds on normal
+/// approximations).
+double as_normal(double t, double freedom) noexcept {
+  const double z = std::sqrt(freedom * std::log1p(t * t / freedom));
+  return std::copysign((8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) * z, t);
+}
+
 }  // namespace
 
 double block_t(const ModelFit& before, const ModelFit& after, std::size_t entries) noexcept {
@@ -138,7 +146,8 @@ double block_t(const ModelFit& before, const ModelFit& after, std::size_t entrie
   }
   const auto n = static_cast<double>(entries);
   const double variance = (squares - sum * sum / n) / (n - 1.0);
-  return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+  const double t = variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+  return entries < kManyEntries ? as_normal(t, n - 1.0) : t;
 }
 
 double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {

@@ -4,7 +4,8 @@
 
 namespace dampline::effect {
 
-/// Mean over deviation of the mean of the entries' improvements from one model to another.
+/// Mean over deviation of the mean of the entries' improvements from one model to another; of few
+/// entries the normal deviate that is as rare.
 [[nodiscard]] double block_t(const ModelFit& before, const ModelFit& after,
                              std::size_t entries) noexcept;
 /// The first coefficient that a model has beyond another's, over its deviation.
