@@ -235,13 +235,6 @@ void BlockSurvey::conclude_power() noexcept {
   conclude_noise(density);
 }
 
-double WhiteAndFolded::white() const noexcept {
-  const double determinant = w * wgg - wg * wg;
-  return std::max((wgg * wy - wg * wgy) / (determinant + kTiny), 0.0);
-}
-
-double WhiteAndFolded::mean() const noexcept { return wy / (w + kTiny); }
-
 // White noise of the wheelsets is what they do not share at 110-126 Hz, less the share that they do
 // not have in common at 45-85 Hz either, where noise is small beside the motion. A part of that has
 // the shape of motion that is folded at half the rate. Its sum for both scatters little; it goes to

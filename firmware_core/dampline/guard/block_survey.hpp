@@ -96,22 +96,6 @@ struct BlockFigures {
   double incoherent{0.0};
 };
 
-/// A constant and a multiple of a shape, by weighted least squares.
-struct WhiteAndFolded {
-  double w{0.0}, wg{0.0}, wgg{0.0}, wy{0.0}, wgy{0.0};
-  void add(double weight, double shape, double value) noexcept {
-    w += weight;
-    wg += weight * shape;
-    wgg += weight * shape * shape;
-    wy += weight * value;
-    wgy += weight * shape * value;
-  }
-  /// At least 0; 0 where they cannot be told apart.
-  [[nodiscard]] double white() const noexcept;
-  /// Weighted mean of the values.
-  [[nodiscard]] double mean() const noexcept;
-};
-
 /// Turns the sums of a block into its figures, a few bins a call.
 class BlockSurvey {
  public:

@@ -36,6 +36,31 @@ inline constexpr double kThinnedEdge = 0.455;
          (filter.thinned ? 0.0 : passed_power(filter, sample_rate_hz - f_hz));
 }
 
+/// Noise beside what is folded: a constant and a multiple of a shape, by weighted least squares.
+struct WhiteAndFolded {
+  static constexpr double kTiny = 1e-300;
+  double w{0.0}, wg{0.0}, wgg{0.0}, wy{0.0}, wgy{0.0};
+  void add(double weight, double shape, double value) noexcept {
+    w += weight;
+    wg += weight * shape;
+    wgg += weight * shape * shape;
+    wy += weight * value;
+    wgy += weight * shape * value;
+  }
+  [[nodiscard]] double determinant() const noexcept { return w * wgg - wg * wg; }
+  /// 0 where they cannot be told apart.
+  [[nodiscard]] double constant() const noexcept {
+    return (wgg * wy - wg * wgy) / (determinant() + kTiny);
+  }
+  [[nodiscard]] double multiple() const noexcept {
+    return (w * wgy - wg * wy) / (determinant() + kTiny);
+  }
+  /// At least 0.
+  [[nodiscard]] double white() const noexcept { return std::fmax(constant(), 0.0); }
+  /// Weighted mean of the values.
+  [[nodiscard]] double mean() const noexcept { return wy / (w + kTiny); }
+};
+
 /// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter
 /// has lowered, by a share of the loss in decibels, up to the corner: 22 % at 100 Hz, 75 % where
 /// nothing is folded, more below, all of it from 76 Hz down, since wheelsets shake most between 45

@@ -61,20 +61,12 @@ double FrameNoise::noise_mps2() const {
   std::array<double, kBins> expected = power_;
   double white = 0.0;
   for (int i = 0; i < kIterations; ++i) {
-    double ww = 0.0, wg = 0.0, wgg = 0.0, wy = 0.0, wgy = 0.0;
-    for (std::size_t k = first_bin_; k <= last_bin_; ++k) {
-      const double weight = 1.0 / (expected[k] * expected[k]);
-      const double g = folded_[k] / folded_[first_bin_];
-      ww += weight;
-      wg += weight * g;
-      wgg += weight * g * g;
-      wy += weight * power_[k];
-      wgy += weight * g * power_[k];
-    }
-    const double determinant = ww * wgg - wg * wg;
-    if (!(determinant > 0.0)) return 0.0;
-    white = (wgg * wy - wg * wgy) / determinant;
-    const double folded = (ww * wgy - wg * wy) / determinant;
+    WhiteAndFolded fit;
+    for (std::size_t k = first_bin_; k <= last_bin_; ++k)
+      fit.add(1.0 / (expected[k] * expected[k]), folded_[k] / folded_[first_bin_], power_[k]);
+    if (!(fit.determinant() > 0.0)) return 0.0;
+    white = fit.constant();
+    const double folded = fit.multiple();
     for (std::size_t k = first_bin_; k <= last_bin_; ++k)
       expected[k] = std::max(white + folded * folded_[k] / folded_[first_bin_], kLeast * largest);
   }
