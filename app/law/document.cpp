@@ -187,7 +187,7 @@ class Reader {
     return out;
   }
   [[nodiscard]] double number_or_0(const char* key) const {
-    return get<Json>(key).is_null() ? 0.0 : number(key);
+    return !json_.contains(key) || json_.at(key).is_null() ? 0.0 : number(key);
   }
   [[nodiscard]] Reader in(const char* key) const {
     return {get<Json>(key), fmt::format("{}: {}", place_, key)};
@@ -334,7 +334,8 @@ std::string to_json(const Document& d) {
                     {"residual",
                      {{"force_n", known(d.residual_n)},
                       {"deflection_m", known(d.residual_m)},
-                      {"frame_accel_mps2", known(d.residual_mps2)}}},
+                      {"frame_accel_mps2", known(d.residual_mps2)},
+                      {"lacking_n2_hz", known(d.lacking_n2_hz)}}},
                     {"not_in_it", d.not_in_it}});
 }
 
@@ -363,6 +364,7 @@ Document read_document(std::string_view text, const std::string& origin) {
   out.residual_n = residual.number_or_0("force_n");
   out.residual_m = residual.number_or_0("deflection_m");
   out.residual_mps2 = residual.number_or_0("frame_accel_mps2");
+  out.lacking_n2_hz = residual.number_or_0("lacking_n2_hz");
   out.not_in_it = from.get<std::vector<std::string>>("not_in_it");
   return out;
 }

@@ -42,6 +42,9 @@ struct Document {
   double residual_n{0.0};
   double residual_m{0.0};
   double residual_mps2{0.0};
+  /// Of the force that moved the mass and that no term has, N^2/Hz, below filter_hz. 0: what is
+  /// left is no more than noise, or that was not worked out.
+  double lacking_n2_hz{0.0};
   std::vector<std::string> not_in_it;  ///< effects that were found and are no term, a sentence each
   std::string record;
 

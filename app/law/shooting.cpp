@@ -453,6 +453,7 @@ Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
   out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
   out.segment_s = segment_s;
   out.segments = segments_.size();
+  out.start = segments_.front().start;
   return out;
 }
 

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/series.hpp"
 #include "app/error.hpp"
+#include "app/law/start.hpp"
 #include "drivers/bytes/spool.hpp"
 #include "drivers/record/rows.hpp"
 
@@ -17,6 +20,7 @@ namespace dampline::app {
 namespace {
 
 constexpr double kIrregular = 0.33;  // of an interval
+constexpr int kDraws = 32;           // of a force that the law lacks
 
 double median_of_steps(const Eigen::VectorXd& time_s) {
   std::vector<double> steps;
@@ -140,6 +144,34 @@ void check_movable(const law::Document& document) {
         "memory"};
 }
 
+/// Deviation of the motion that comes of a force which the law lacks, as dense as in its own record
+/// up to the corner that it was seen through: the scatter of some drawn ones.
+Eigen::VectorXd walk_of(const law::Document& document, const law::Input& input,
+                        const Eigen::VectorXd& force_n, const law::State& start) {
+  const double size_n = std::sqrt(document.lacking_n2_hz * document.filter_hz);
+  const double keep = std::exp(-4.0 * document.filter_hz * input.interval_s());
+  const double fresh_n = size_n * std::sqrt(1.0 - keep * keep);
+  const law::Course course = law::move(document.law, input, start);
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(2 * input.size());
+  std::mt19937_64 random{1};
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Eigen::VectorXd drawn_n = force_n;
+    double lack_n = size_n * normal(random);
+    for (Eigen::Index i = 0; i < drawn_n.size(); ++i) {
+      drawn_n[i] += lack_n;
+      lack_n = keep * lack_n + fresh_n * normal(random);
+    }
+    const law::Course other =
+        law::move(document.law, law::Input{drawn_n, input.interval_s()}, start);
+    if (!other.whole)
+      return Eigen::VectorXd::Constant(squares.size(), std::numeric_limits<double>::infinity());
+    squares.head(input.size()) += (other.deflection_m - course.deflection_m).cwiseAbs2();
+    squares.tail(input.size()) += (other.velocity_mps - course.velocity_mps).cwiseAbs2();
+  }
+  return (squares / kDraws).cwiseSqrt();
+}
+
 }  // namespace
 
 Prediction predict_force(const law::Document& document, const Config& config,
@@ -190,7 +222,9 @@ Prediction predict_motion(const law::Document& document, const Config& config,
   Eigen::VectorXd deflection_m;
   if (measured) {
     deflection_m = series.deflection_m.array() + series.zero_m;
-    start = {deflection_m[0] - document.zero_m, series.velocity_mps[0]};
+    const Eigen::VectorXd from_zero_m = deflection_m.array() - document.zero_m;
+    start = law::start_of(document.law, {series.force_n, from_zero_m, series.velocity_mps,
+                                         series.interval_s, series.noise_m});
   }
   const law::Input input{series.force_n, series.interval_s};
   const Eigen::Index count = input.size();
@@ -207,9 +241,12 @@ Prediction predict_motion(const law::Document& document, const Config& config,
   Prediction out = begun("motion from force", series, document);
   if (!measured) out.notes.emplace_back("It starts at rest: the record holds no deflection_m.");
   out.columns.push_back({"time_s", series.time_s});
-  const Eigen::VectorXd std = deviation_of(document, motion_of, 2 * count);
-  add_quantity("deflection_m", "m", motion.head(count), std.head(count), document.residual_m,
-               deflection_m, 0, out);
+  Eigen::VectorXd std = deviation_of(document, motion_of, 2 * count);
+  if (document.lacking_n2_hz > 0.0)
+    std =
+        (std.cwiseAbs2() + walk_of(document, input, series.force_n, start).cwiseAbs2()).cwiseSqrt();
+  add_quantity("deflection_m", "m", motion.head(count), std.head(count),
+               document.lacking_n2_hz > 0.0 ? 0.0 : document.residual_m, deflection_m, 0, out);
   add_quantity("velocity_mps", "m/s", motion.tail(count), std.tail(count), 0.0, {}, 0, out);
   return out;
 }

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
 #include "app/law/shooting.hpp"
+#include "app/law/start.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -20,9 +20,7 @@ std::vector<law::Drive> drives_of(const std::vector<Series>& records, double per
   std::vector<law::Drive> out;
   for (const Series& s : records) {
     Eigen::Index count = s.size();
-    const Eigen::ArrayXd x = s.deflection_m.array() - s.deflection_m.mean();
-    const double period_s =
-        2.0 * std::numbers::pi * std::sqrt(x.square().sum() / s.velocity_mps.squaredNorm());
+    const double period_s = law::period_of(s.deflection_m, s.velocity_mps);
     if (periods > 0.0 && std::isfinite(period_s))
       count = std::min(
           count, static_cast<Eigen::Index>(periods * period_s /

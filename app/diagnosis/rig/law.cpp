@@ -7,11 +7,15 @@
 #include <cmath>
 
 #include "app/diagnosis/rig/thresholds.hpp"
+#include "app/law/start.hpp"
 
 namespace dampline::app::rig {
 namespace {
 
 using Part = law::Unknown::Part;
+
+constexpr double kBlockTurns = 4.0;         // of the corner, in a mean
+constexpr double kMedianOfSquare = 0.4549;  // of a normal deviate
 
 /// Instead of a term's number.
 enum NoTerm : int { kMass = -1, kNone = -2 };
@@ -143,6 +147,17 @@ law::Document document_of(const Model& model, const Joint& joint, const Scale& s
   return out;
 }
 
+/// One-sided density of a force well below a corner, by the median of its means over blocks in
+/// squares: where the mass sticks, nobody knows what friction takes.
+double density_below(double corner_hz, const Eigen::VectorXd& force_n, double interval_s) {
+  const auto block = static_cast<Eigen::Index>(kBlockTurns / (corner_hz * interval_s)) + 1;
+  std::vector<double> squares;
+  for (Eigen::Index i = 0; i + block <= force_n.size(); i += block)
+    squares.push_back(std::pow(force_n.segment(i, block).mean(), 2));
+  if (squares.empty()) return 0.0;
+  return 2.0 * static_cast<double>(block) * interval_s * median_of(squares) / kMedianOfSquare;
+}
+
 void measure_left(const Model& model, const Series& series, law::Document& out) {
   out.record = series.record;
   out.sample_rate_hz = 1.0 / series.interval_s;
@@ -150,14 +165,16 @@ void measure_left(const Model& model, const Series& series, law::Document& out) 
   out.zero_m = series.zero_m;
   out.force_sign = series.force_sign;
   const Rows rows = rows_of(model.columns, seen_by(model, series), 1);
-  if (rows.values.rows() > 0)
-    out.residual_n =
-        std::sqrt((rows.values.rightCols<1>() - model_force(model, rows)).squaredNorm() /
-                  static_cast<double>(rows.values.rows()));
+  const Eigen::VectorXd left_n = rows.values.rightCols<1>() - model_force(model, rows);
+  if (left_n.size() > 0)
+    out.residual_n = std::sqrt(left_n.squaredNorm() / static_cast<double>(left_n.size()));
   if (out.subject != law::Subject::kDrivenMass || !law::FreeRun::can(out.law) || series.has_gap)
     return;
   if (series.size() < 2) return;
-  out.initial = {series.deflection_m[0], series.velocity_mps[0]};
+  out.initial = law::start_of(out.law, {series.force_n, series.deflection_m, series.velocity_mps,
+                                        series.interval_s, series.noise_m});
+  if (model.free_run.segments > 0 && !model.free_run.followed)
+    out.lacking_n2_hz = density_below(out.filter_hz, left_n, series.interval_s);
   const law::Input input{series.force_n, series.interval_s};
   const law::Course course = law::move(out.law, input, out.initial);
   if (course.whole)
