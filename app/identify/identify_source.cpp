@@ -75,20 +75,6 @@ bool PipeEnd::reached(bool empty) noexcept {
 
 namespace {
 
-Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
-                          bool show_progress) {
-  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
-  const auto feed = open_feed(config, source, kind);
-  TruckRun<kIdentifyParts> run{config, feed->signals()};
-  pump(*feed, source, show_progress, run);
-  Identified out;
-  out.result = run.finish(rate_of(*feed, run), source.path);
-  feed->describe(run.frames(), out.result);
-  out.inputs = feed->extra_inputs();
-  out.sums = run.statistics();
-  return out;
-}
-
 Identified identify_rig_file(const Config& config, const SourceOptions& source,
                              bool show_progress) {
   if (const auto searched = rig::searched_base(config.model); !searched.empty())
@@ -106,6 +92,20 @@ Identified identify_rig_file(const Config& config, const SourceOptions& source,
 }
 
 }  // namespace
+
+Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
+                          bool show_progress) {
+  static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
+  const auto feed = open_feed(config, source, kind);
+  TruckRun<kIdentifyParts> run{config, feed->signals()};
+  pump(*feed, source, show_progress, run);
+  Identified out;
+  out.result = run.finish(rate_of(*feed, run), source.path);
+  feed->describe(run.frames(), out.result);
+  out.inputs = feed->extra_inputs();
+  out.sums = run.statistics();
+  return out;
+}
 
 std::unique_ptr<SampleFeed> open_feed(const Config& config, const SourceOptions& source,
                                       SourceKind kind) {

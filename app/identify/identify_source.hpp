@@ -98,6 +98,10 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
                                feed.explain_emptiness(run.frames()))};
 }
 
+/// A truck's record alone, without its checksum. Throws RunError or UsageError.
+[[nodiscard]] Identified identify_truck(const Config& config, const SourceOptions& source,
+                                        SourceKind kind, bool show_progress);
+
 /// Opens a record, live interfaces excepted, and identifies it. Throws RunError or UsageError;
 /// there is no partial result.
 [[nodiscard]] Identified identify_source(const Config& config, const SourceOptions& source,

@@ -111,6 +111,11 @@ constexpr std::array kFaults{
            "Are all three on the same side, upright, and on the same truck? Does the truck hunt? "
            "Sensors on both sides, or one where the frame does not roll, tell more.",
            kAnyRig},
+    Advice{
+        "wrong_low_pass", "The sensors' low pass is not what was stated",
+        "The size is where it seems to lie. See the sensors' data sheets and what the logger was "
+        "set to, and state [input.anti_alias] corner_hz.",
+        kAnyRig},
     Advice{"wrong_value", "Single wrong values in a column", "", kAnyRig},
     Advice{"wrong_time", "Lines whose time is out of order", "",
            "See whether the file was joined from pieces, or the recorder's clock was set while it "

@@ -37,8 +37,9 @@ enum class FaultKind : std::uint8_t {
   kRingingMount,       ///< what a sensor is mounted on has a resonance of its own
   kOffCentre,          ///< the frame's sensor sees the frame's pitch
   kForeignMotion,      ///< the frame does below its resonance what no wheelset does
+  kWrongLowPass,       ///< the sensors' low pass is not what was declared
 };
-inline constexpr std::size_t kFaultKinds = 21;
+inline constexpr std::size_t kFaultKinds = 22;
 
 /// Where a fault is. What compares the two wheelsets cannot tell which of them it is.
 enum class FaultChannel : std::uint8_t { kFrame, kWheelset1, kWheelset2, kWheelsets, kAll };
@@ -66,7 +67,7 @@ struct Fault {
       "gain_change",        "soft_saturation",  "excess_noise",   "noise_burst",
       "resolution_loss",    "swapped_channels", "wrong_polarity", "wrong_sample_rate",
       "identical_channels", "jitter",           "ringing_mount",  "off_centre",
-      "foreign_motion"};
+      "foreign_motion",     "wrong_low_pass"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -74,7 +75,7 @@ struct Fault {
 [[nodiscard]] constexpr const char* unit_of(FaultKind kind) noexcept {
   constexpr std::array<const char*, kFaultKinds> kUnits{
       "m/s^2", "s",     "m/s^2", "m/s^2", "samples", "samples", "s", "ppm", "%", "%", "m/s^2",
-      "m/s^2", "m/s^2", "ratio", "-",     "Hz",      "-",       "s", "Hz",  "%", "%"};
+      "m/s^2", "m/s^2", "ratio", "-",     "Hz",      "-",       "s", "Hz",  "%", "%", "Hz"};
   return kUnits[static_cast<std::size_t>(kind)];
 }
 

@@ -245,15 +245,18 @@ struct PlainExplained {
   }
 };
 
-/// What `explain` makes of it.
-inline PlainExplained explained_from(const PlainTruck& truck, const PlainSensors& sensors,
-                                     double length_s, std::uint64_t seed) {
-  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
-  app::Explained explained =
-      app::explain_truck(plain_config(truck, sensors), {{file.path(), false}, {}, false});
+/// What `explain` makes of a file.
+inline PlainExplained explained_from(const app::Config& config, const std::string& path) {
+  app::Explained explained = app::explain_truck(config, {{path, false}, {}, false});
   app::RunResult result = std::move(explained.identified);
   app::Explanation explanation = app::conclude(explained, result);
   return {std::move(explanation), std::move(result)};
+}
+/// Of a record whose sensors are declared as they are.
+inline PlainExplained explained_from(const PlainTruck& truck, const PlainSensors& sensors,
+                                     double length_s, std::uint64_t seed) {
+  const TemporaryFile file{plain_record(truck, sensors, length_s, seed)};
+  return explained_from(plain_config(truck, sensors), file.path());
 }
 
 }  // namespace dampline::test

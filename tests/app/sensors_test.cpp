@@ -85,6 +85,40 @@ INSTANTIATE_TEST_SUITE_P(
                     Sensing{"At1000Behind100", {.rate_hz = 1000.0}}),
     [](const auto& sensing) { return std::string{sensing.param.name}; });
 
+struct Declared {
+  const char* name;
+  double corner_hz;
+  double declared_hz;  ///< 0: unknown
+};
+
+class WrongLowPassTest : public testing::TestWithParam<Declared> {};
+
+/// It bends level and stiffness and would pass for viscoelastic or presliding friction.
+TEST_P(WrongLowPassTest, IsNamedWithItsCornerAndNothingBesideIt) {
+  for (const std::size_t which : {0U, 2U}) {
+    const PlainTruck& truck = kPlainTrucks.at(which);
+    PlainSensors sensors;
+    sensors.corner_hz = GetParam().corner_hz;
+    const test::TemporaryFile file{test::plain_record(truck, sensors, 120.0, 9108)};
+    sensors.corner_hz = GetParam().declared_hz;
+    const Config config = test::plain_config(truck, sensors);
+    const auto found = test::explained_from(config, file.path());
+    ASSERT_EQ(found.result.faults.list.size(), 1U) << truck.name;
+    const FaultFinding& fault = found.result.faults.list[0];
+    EXPECT_EQ(fault.name, "wrong_low_pass") << truck.name;
+    EXPECT_NEAR(fault.size, GetParam().corner_hz, 0.06 * GetParam().corner_hz) << truck.name;
+    EXPECT_FALSE(found.names_effect()) << truck.name;
+    EXPECT_EQ(found.result.trust, Trust::kDataFaulty) << truck.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners, WrongLowPassTest,
+                         testing::Values(Declared{"TooHigh", 60.0, 100.0},
+                                         Declared{"ALittleTooHigh", 80.0, 100.0},
+                                         Declared{"TooLow", 80.0, 60.0},
+                                         Declared{"Unknown", 60.0, 0.0}),
+                         [](const auto& declared) { return std::string{declared.param.name}; });
+
 /// Motion of the wheelsets that the sampling folds is not the noise that was declared.
 TEST(PlainSensorsNoise, IsNotExceededByWhatIsFolded) {
   for (const PlainTruck& truck : kPlainTrucks) {

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "app/diagnosis/truck/looks.hpp"
+#include "app/diagnosis/truck/low_pass.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
@@ -84,6 +86,18 @@ void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
   if (other_leaves_less(with, out)) out = std::move(with);
 }
 
+/// Sensors whose low pass is not as declared: that explains more than effects do.
+void look_for_low_pass(const Reading& reading, Explained& out) {
+  if (out.withheld || out.drifts || out.other) return;
+  const bool is_complete = conclusion_of(out) == effect::Conclusion::kComplete;
+  const bool could_be_too_low = reading.config.input.anti_alias.corner_hz < kUsualHz;
+  if (is_complete && !could_be_too_low && left_over_floor(out) > kBelowFloor) return;
+  std::optional<double> by_effects;
+  if (out.explanation.step_count > 0) by_effects = left_nmse(out);
+  const auto corner_hz = other_low_pass_hz(reading.config, reading.options.source, by_effects);
+  if (corner_hz) name_and_withhold(FaultKind::kWrongLowPass, FaultChannel::kAll, *corner_hz, out);
+}
+
 }  // namespace
 
 void take_misplaced(TruckView view, double rate_hz, Explained& out) {
@@ -126,6 +140,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.circumstances = pass.run->circumstances();
   explain_pass(reading, pass, out);
   look_for_other(reading, pass, out);
+  look_for_low_pass(reading, out);
   effect::name_nothing_impossible(out.explanation);
   take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;

@@ -12,7 +12,6 @@ namespace dampline::app {
 
 namespace {
 
-constexpr double kBelowFloor = 0.85;
 constexpr double kFaintGain = 0.025;
 constexpr double kShareOfExcess = 0.1;  // over the floor, that effects must take
 // Sensors out of place; effects leave at most 0.05, or 2.8 times the floor (P1 of constants.md).
@@ -74,17 +73,10 @@ std::optional<FaultKind> misplaced(const Explained& explained) {
 
 void name_misplaced(Explained& out) noexcept {
   const auto kind = misplaced(out);
-  FaultView& faults = out.circumstances.faults;
-  if (!kind || faults.count == faults.faults.size()) return;
+  if (!kind) return;
   const bool off = *kind == FaultKind::kOffCentre;
-  const double share = off ? faults.misplacement.difference : left_nmse(out);
-  faults.faults[faults.count++] = {.kind = *kind,
-                                   .channel = FaultChannel::kFrame,
-                                   .size = 100.0 * share,
-                                   .unit = unit_of(*kind),
-                                   .count = 1};
-  out.withheld = true;
-  effect::withhold_effects(out.explanation);
+  const double share = off ? out.circumstances.faults.misplacement.difference : left_nmse(out);
+  name_and_withhold(*kind, FaultChannel::kFrame, 100.0 * share, out);
 }
 
 bool are_faint(const effect::Explanation& e) noexcept {
@@ -95,6 +87,15 @@ bool are_faint(const effect::Explanation& e) noexcept {
 }
 
 }  // namespace
+
+void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept {
+  FaultView& faults = out.circumstances.faults;
+  if (faults.count == faults.faults.size()) return;
+  faults.faults[faults.count++] = {
+      .kind = kind, .channel = channel, .size = size, .unit = unit_of(kind), .count = 1};
+  out.withheld = true;
+  effect::withhold_effects(out.explanation);
+}
 
 void hold_back(Explained& out) noexcept {
   if (out.withheld || out.drifts) return;

@@ -6,6 +6,8 @@
 
 namespace dampline::app {
 
+inline constexpr double kBelowFloor = 0.85;  ///< times the floor: less than sensors leave
+
 /// What the base model holds and which effects may be added to it.
 [[nodiscard]] effect::ExplainerConfig explainer_config(const Config& config);
 /// The same without the effects that the record's faults look like and those that are needless.
@@ -20,6 +22,9 @@ namespace dampline::app {
 /// wrong by, a stop or a friction with memory below nothing, or a later or faint one beside a model
 /// that left less without it than sensors and rounding do. kUnknown where each is needed.
 [[nodiscard]] effect::Effect needless_effect(const effect::Explanation& explanation) noexcept;
+
+/// One fault more, beside which no effect is named.
+void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept;
 
 /// Takes back what was named without being it, once the floor is known. Where the motion says that
 /// the sensors do not tell that of this truck, and the model leaves much too or takes it for a
