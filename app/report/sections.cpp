@@ -239,10 +239,6 @@ std::string phase_section(const RunResult& result) {
                 fmt::format("{} {}", kPhaseText, describe_period(*result.phase)));
 }
 
-std::string fault_size(const FaultFinding& fault) {
-  return fault.unit == "-" ? "" : fmt::format("{:.4g} {}", fault.size, fault.unit);
-}
-
 std::string fault_section(const RunResult& result) {
   const DataFaults& faults = result.faults;
   const bool truck = result.kind == "truck";

@@ -24,8 +24,6 @@ namespace dampline::app {
 [[nodiscard]] std::string live_section(const RunResult& result);
 [[nodiscard]] std::string provenance_section(const Provenance& provenance,
                                              const std::string& run_toml);
-/// "12.5 m/s^2"; empty for a fault that has none.
-[[nodiscard]] std::string fault_size(const FaultFinding& fault);
 /// Faults with channel, time and size, inputs that are no faults, and a parameter that changed.
 /// Empty for a rig's record.
 [[nodiscard]] std::string fault_section(const RunResult& result);

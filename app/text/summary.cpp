@@ -201,6 +201,10 @@ std::string describe_alarm_figures() {
       kFigures.false_alarms_per_1000_h, kFigures.delay_s / 60.0, kFigures.delay_95_s / 60.0);
 }
 
+std::string fault_size(const FaultFinding& fault) {
+  return fault.unit == "-" ? "" : fmt::format("{:.4g} {}", fault.size, fault.unit);
+}
+
 std::string describe_drift(const DriftFinding& drift) {
   std::string change = fmt::format("{} changed by {:+.1f} ± {:.1f} %", drift.parameter,
                                    drift.change_percent.value, drift.change_percent.std);

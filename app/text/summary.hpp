@@ -20,6 +20,8 @@ namespace dampline::app {
 /// Of a run with row_method: "D8 at level 2 (step 4 ms), least squares over 1 234 rows".
 [[nodiscard]] std::string describe_rows(const RunResult& result);
 
+/// "12.5 m/s^2"; empty for a fault that has none.
+[[nodiscard]] std::string fault_size(const FaultFinding& fault);
 /// "+12.1 ± 0.9 % at 150 s" and the like.
 [[nodiscard]] std::string describe_drift(const DriftFinding& drift);
 /// The same as a sentence, which begins with kNotConstant.

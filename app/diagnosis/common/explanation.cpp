@@ -11,6 +11,7 @@
 #include "app/config/config.hpp"
 #include "app/run/json.hpp"
 #include "app/text/format.hpp"
+#include "app/text/summary.hpp"
 
 namespace dampline::app {
 namespace {
@@ -319,8 +320,11 @@ std::string to_json(const Explanation& e) {
 
 std::string summarize(const Explanation& e) {
   std::string text = fmt::format("{}: {}\n", e.verdict, sentence(e));
-  for (const FaultFinding& f : e.faults)
-    text += fmt::format("fault  {}, {}, at {:.1f} s\n", f.name, f.channel, f.time_s);
+  for (const FaultFinding& f : e.faults) {
+    const std::string size = fault_size(f);
+    text += fmt::format("fault  {}, {}, {}{}at {:.1f} s\n", f.name, f.channel, size,
+                        size.empty() ? "" : ", ", f.time_s);
+  }
   if (e.held_out == "records") text += "held out: one whole record at a time\n";
   if (e.filter_hz > 0.0)
     text += fmt::format("errors of force and model behind the same filter, -3 dB at {:.4g} Hz\n",
