@@ -254,5 +254,57 @@ TEST(ADrivenMass, HasASpringBehindADashpotWhereThatIsLookedFor) {
   }
 }
 
+/// 10 kg on a spring with dry and viscous friction, 1000 Hz, 40 s, which sticks; the force is
+/// measured with noise of 5 % of its rms.
+std::string sticking(unsigned seed) {
+  constexpr int kSubsteps = 40;
+  constexpr double kStepS = 1e-3 / kSubsteps;
+  std::mt19937_64 random{seed};
+  std::uniform_real_distribution<double> any{0.0, 2.0 * M_PI};
+  std::normal_distribution<double> noise;
+  std::array<double, 40> phases{};
+  for (double& phase : phases) phase = any(random);
+  const auto force_n = [&](double t) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < phases.size(); ++k)
+      sum += std::cos(2.0 * M_PI * (0.3 + 0.3 * static_cast<double>(k)) * t + phases[k]);
+    return 55.0 * sum / std::sqrt(0.5 * static_cast<double>(phases.size()));
+  };
+  std::string out = "time_s,deflection_m,force_n\n";
+  double x = 0.0;
+  double v = 0.0;
+  for (int i = 0; i < 40000 * kSubsteps; ++i) {
+    const double t = i * kStepS;
+    const double push_n = force_n(t);
+    if (i % kSubsteps == 0)
+      out += fmt::format("{:.6f},{:.12g},{:.9g}\n", t, x, push_n + 2.75 * noise(random));
+    const double free_n = push_n - 18.0 * v - 3600.0 * x;
+    double next = v + kStepS * 0.1 * (free_n - std::copysign(25.0, v));
+    if (v == 0.0 || next * v < 0.0)
+      next = std::abs(free_n) <= 25.0 ? 0.0 : kStepS * 0.1 * (free_n - std::copysign(25.0, free_n));
+    x += kStepS * 0.5 * (v + next);
+    v = next;
+  }
+  return out;
+}
+
+/// Friction's leaps, seen through a test function, bend the equations by two deviations.
+TEST(ADrivenMass, IsCompleteWhereItSticksAndItsForceIsNoisy) {
+  for (const unsigned seed : {1U, 2U}) {
+    Config config;
+    config.model.base = {"coulomb", "viscous"};
+    config.model.inertia = "identify";
+    config.model.stiffness = "identify";
+    const rig::Explanation found = dampline::test::explained(sticking(seed), config);
+    EXPECT_EQ(found.verdict(), "complete") << summarize(found);
+    const std::vector<std::pair<const char*, double>> truths{
+        {"coulomb", 25.0}, {"moving_mass", 10.0}, {"stiffness", 3600.0}, {"viscous", 18.0}};
+    for (const auto& [name, truth] : truths) {
+      dampline::test::expect_size(found, name, truth, 2.5);
+      EXPECT_NEAR(value_of(found, name), truth, 0.01 * truth) << name << ", seed " << seed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dampline::app

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "app/diagnosis/rig/law.hpp"
+#include "app/diagnosis/rig/surrogate.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
+#include "app/diagnosis/rig/trials.hpp"
 #include "app/law/shooting.hpp"
 #include "app/law/start.hpp"
 
@@ -264,6 +266,59 @@ double noise_of(const std::vector<Series>& records) {
   return out;
 }
 
+double nmse_of(const Model& model, const std::vector<Series>& records) {
+  TrialBase base;
+  base.columns = model.columns;
+  base.ridge = model.ridge;
+  return best_fit(records, base).held_out_nmse;
+}
+
+/// What the equations say of records that they know, those of a law's own motion, less that law;
+/// nothing where it moves otherwise than the records, or leaves hardly anything of what is left.
+std::optional<Eigen::VectorXd> error_of_equations(const std::vector<Series>& records,
+                                                  const Scale& scale, const Model& model,
+                                                  const Joint& joint) {
+  const std::optional<law::Law> law = law_of(model, scale);
+  if (!law) return std::nullopt;
+  std::vector<Series> known;
+  for (const Series& record : records) {
+    auto moved = moved_surrogate(record, *law, 0.0, known.size());
+    if (!moved) return std::nullopt;
+    known.push_back(std::move(*moved));
+  }
+  Model again = model;
+  const Joint there = fit_jointly(again, known, model.ridge, scale);
+  if (!there.ok || there.size() != joint.size()) return std::nullopt;
+  if (nmse_of(again, known) < kOfTheirOwn * nmse_of(model, records)) return std::nullopt;
+  return unknowns_of(again, there) - unknowns_of(model, joint);
+}
+
+/// The law of whose motion the equations say what they say of the records (indirect inference;
+/// Gourieroux, Monfort and Renault, 1993): friction's leaps, seen through a test function, bend
+/// them. A part of what was taken off stays in the deviation.
+void correct_by_own_motion(const std::vector<Series>& records, const Scale& scale, Model& model,
+                           Joint& joint) {
+  const Eigen::VectorXd said = unknowns_of(model, joint);
+  const Eigen::ArrayXd std = joint.covariance.diagonal().array().max(0.0).sqrt();
+  const auto first = error_of_equations(records, scale, model, joint);
+  if (!first) return;
+  Eigen::VectorXd error = *first;
+  double stays = 1.0;
+  for (int round = 0; round < kCorrections && stays == 1.0; ++round) {
+    if ((error.array().abs() > kMostError * (said.array().abs() + std)).any()) break;
+    const auto next = error_of_equations(records, scale, with(model, joint, said - error), joint);
+    if (!next) break;
+    const Eigen::ArrayXd allowed = kCorrected * std + kErrorStays * error.array().abs();
+    if (((*next - error).array().abs() < allowed).all()) stays = kErrorStays;
+    error = 0.5 * (error + *next);  // it swings
+  }
+  if (stays == 1.0)
+    error = *first;
+  else
+    model = with(std::move(model), joint, said - error);
+  joint.covariance += stays * stays * error * error.transpose();
+}
+
 }  // namespace
 
 Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model,
@@ -321,6 +376,8 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
     // It may have ended beside the least: as uncertain as both ways are apart.
     if (!best.model.free_run.followed) best.joint.covariance += apart * apart.transpose();
     best.joint.half_difference.setZero();
+  } else {
+    correct_by_own_motion(records, scale, best.model, best.joint);
   }
   model = std::move(best.model);
   joint = std::move(best.joint);

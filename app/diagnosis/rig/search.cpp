@@ -271,8 +271,9 @@ Fit richest(const State& s) {
 
 /// What a complete law would leave, never more than a law that was tried does.
 void find_floor(const State& s, Explanation& out) {
-  const Law law{out.final.columns, out.final.fit.theta, columns_of(s, s.library.friction), ridge(s),
-                s.scale};
+  Law law{out.final.columns, out.final.fit.theta, columns_of(s, s.library.friction), ridge(s),
+          s.scale};
+  if (out.final.free_run.segments > 0) law.moves = law_of(out.final, s.scale);
   const Floor floor = surrogate_floor(s.records, law);
   const Fit rich = richest(s);
   double reached = out.final.fit.held_out_nmse;

@@ -70,34 +70,6 @@ Eigen::VectorXd at_rest(const Eigen::VectorXd& x, Eigen::Index window, double re
   return out;
 }
 
-/// Standstill says nothing of a law of motion, nor does the way to the next reversal, where what
-/// friction remembers is of the time before.
-void leave_rest_out(Series& series) {
-  const Eigen::VectorXd& x = series.deflection_m;
-  const Eigen::VectorXd& v = series.velocity_mps;
-  if (x.size() == 0) return;
-  const double rms_m = std::sqrt((x.array() - x.mean()).square().mean());
-  const double period =
-      2.0 * std::numbers::pi * rms_m / (std::sqrt(v.array().square().mean()) * series.interval_s);
-  const auto window = std::max(kFewestAtRest, static_cast<Eigen::Index>(kRestPeriods * period));
-  if (!std::isfinite(period)) return;
-  Eigen::VectorXd out = at_rest(x, window, kStill * (x.maxCoeff() - x.minCoeff()));
-  const auto most = static_cast<Eigen::Index>(kUntilTurned * period);
-  for (Eigen::Index i = 1; i < x.size(); ++i) {
-    if (out[i] > 0.0 || out[i - 1] == 0.0) continue;
-    Eigen::Index to = i;
-    while (to < std::min(i + most, x.size()) && v[to] * v[i] > 0.0) ++to;
-    out.segment(i, to - i).setOnes();
-    i = to;
-  }
-  const double share = out.mean();
-  if (share == 0.0 || share > kMostRest) return;
-  series.left_out = Series::kRest * out;
-  series.notes.push_back(fmt::format(
-      "Standstill, and the way from it to the next reversal, is left out: {:.1f} % of the record.",
-      100.0 * share));
-}
-
 /// One column, row by row.
 std::vector<double> read_column(const std::string& path, const std::string& column,
                                 bool skip_bad_lines) {
@@ -154,6 +126,34 @@ ReadRows read_rows(const Record& record, Clock& clock, core::Survey& survey) {
 }
 
 }  // namespace
+
+/// Standstill says nothing of a law of motion, nor does the way to the next reversal, where what
+/// friction remembers is of the time before.
+void leave_rest_out(Series& series) {
+  const Eigen::VectorXd& x = series.deflection_m;
+  const Eigen::VectorXd& v = series.velocity_mps;
+  if (x.size() == 0) return;
+  const double rms_m = std::sqrt((x.array() - x.mean()).square().mean());
+  const double period =
+      2.0 * std::numbers::pi * rms_m / (std::sqrt(v.array().square().mean()) * series.interval_s);
+  const auto window = std::max(kFewestAtRest, static_cast<Eigen::Index>(kRestPeriods * period));
+  if (!std::isfinite(period)) return;
+  Eigen::VectorXd out = at_rest(x, window, kStill * (x.maxCoeff() - x.minCoeff()));
+  const auto most = static_cast<Eigen::Index>(kUntilTurned * period);
+  for (Eigen::Index i = 1; i < x.size(); ++i) {
+    if (out[i] > 0.0 || out[i - 1] == 0.0) continue;
+    Eigen::Index to = i;
+    while (to < std::min(i + most, x.size()) && v[to] * v[i] > 0.0) ++to;
+    out.segment(i, to - i).setOnes();
+    i = to;
+  }
+  const double share = out.mean();
+  if (share == 0.0 || share > kMostRest) return;
+  series.left_out = Series::kRest * out;
+  series.notes.push_back(fmt::format(
+      "Standstill, and the way from it to the next reversal, is left out: {:.1f} % of the record.",
+      100.0 * share));
+}
 
 double between(const Eigen::VectorXd& y, double place) {
   const auto last = static_cast<double>(y.size() - 1);

@@ -75,6 +75,9 @@ struct Series {
 /// state at the first sample, and what it makes of the first stroke is no change.
 [[nodiscard]] std::vector<double> places_of_steps(const std::vector<Series>& records);
 
+/// Leaves out standstill, and the way from it to the next reversal.
+void leave_rest_out(Series& series);
+
 /// Reads a record. `reference_column`: a column of another prediction; empty: none. Throws RunError
 /// naming the file, what was found and what was expected.
 [[nodiscard]] Series read_series(const std::string& path, const Config& config, bool skip_bad_lines,

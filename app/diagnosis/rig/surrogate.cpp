@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "app/diagnosis/rig/library.hpp"
 #include "app/diagnosis/rig/trials.hpp"
+#include "app/law/start.hpp"
 #include "dampline/numeric/random.hpp"
 #include "dampline/rig/motion.hpp"
 #include "dampline/rig/survey.hpp"
@@ -25,6 +27,7 @@ constexpr double kRepeats = 0.1;       // of the motion's rms, by which periods 
 constexpr Eigen::Index kLookedAt = 4000;
 constexpr double kFewestPeriods = 3.0;
 constexpr double kMedianOfNormal = 0.67449;
+constexpr double kOtherWay = 0.05;  // of the deflection's variance: it moves otherwise
 
 double rounded(double value, double step) {
   return step > 0.0 ? step * std::round(value / step) : value;
@@ -209,6 +212,26 @@ Series surrogate_of(const Series& record, const Series& truth, const Eigen::Vect
 
 }  // namespace
 
+std::optional<Series> moved_surrogate(const Series& record, const law::Law& law,
+                                      double force_noise_n, std::uint64_t seed) {
+  const law::Input input{record.force_n, record.interval_s};
+  const law::State start =
+      law::start_of(law, {record.force_n, record.deflection_m, record.velocity_mps,
+                          record.interval_s, record.noise_m});
+  law::Course course = law::move(law, input, start);
+  if (!course.whole) return std::nullopt;
+  const Eigen::VectorXd apart = course.deflection_m - record.deflection_m;
+  const double variance = (record.deflection_m.array() - record.deflection_m.mean()).square().sum();
+  if (apart.squaredNorm() > kOtherWay * variance) return std::nullopt;
+  Series truth = record;
+  truth.deflection_m = std::move(course.deflection_m);
+  truth.velocity_mps = std::move(course.velocity_mps);
+  Series out = surrogate_of(record, truth, record.force_n, force_noise_n, 0.0, seed);
+  out.left_out.resize(0);
+  leave_rest_out(out);
+  return out;
+}
+
 double resolution_of(const Eigen::VectorXd& values) {
   const double least = kFewestStepShare * (values.maxCoeff() - values.minCoeff());
   std::vector<double> differences;
@@ -250,7 +273,11 @@ Floor surrogate_floor(const std::vector<Series>& records, const Law& law) {
     const Eigen::VectorXd force = force_of(law, truth);
     const double period = period_of(record.deflection_m);
     const double noise_n = force_noise(record, force, period);
-    surrogates.push_back(surrogate_of(record, truth, force, noise_n, period, seed++));
+    std::optional<Series> moved;
+    if (law.moves) moved = moved_surrogate(record, *law.moves, noise_n, seed);
+    surrogates.push_back(moved ? std::move(*moved)
+                               : surrogate_of(record, truth, force, noise_n, period, seed));
+    ++seed;
     if (surrogates.back().size() < record.size() / 2) return out;
     const double variance = (record.force_n.array() - record.force_n.mean()).square().mean();
     noise_nmse += noise_n * noise_n / (variance * static_cast<double>(records.size()));

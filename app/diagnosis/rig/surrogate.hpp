@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "app/diagnosis/rig/explanation.hpp"
 #include "app/diagnosis/rig/library.hpp"
+#include "app/law/free_run.hpp"
 
 namespace dampline::app::rig {
 
@@ -23,16 +25,23 @@ struct Law {
   std::vector<Regressor> friction;
   double ridge{0.0};
   Scale scale;  ///< of the motion: what is narrower than an error of the velocity is a sign
+  std::optional<law::Law> moves{};  ///< the same as a law of a driven mass that can be moved
 };
+
+/// The record that a driven mass's law makes by its own motion under the record's force, with its
+/// leaps at reversals, as it would be measured: with the record's noise, and more of the force.
+/// Nothing where it goes another way than the record.
+[[nodiscard]] std::optional<Series> moved_surrogate(const Series& record, const law::Law& law,
+                                                    double force_noise_n, std::uint64_t seed);
 
 struct Floor {
   double nmse{0.0};         ///< held out, mean of the records; 0: not known
   double noise_share{0.0};  ///< of it, what the noise of the force makes
 };
 /// What the same estimator leaves of the surrogates of all records, which no effect can take away.
-/// A surrogate is the record that the law alone would have made: on the measured motion, smoothed,
-/// measured again with the record's own noise and resolution; noise is
-/// no more than what periods of the motion differ by.
+/// A surrogate is the record that the law alone would have made: by its own motion where it moves
+/// as the record does, otherwise on the measured motion, smoothed; measured again with the record's
+/// own noise and resolution; noise is no more than what periods of the motion differ by.
 [[nodiscard]] Floor surrogate_floor(const std::vector<Series>& records, const Law& law);
 
 }  // namespace dampline::app::rig

@@ -101,6 +101,12 @@ inline constexpr double kOtherForm = 0.999;  // of the squares left: another for
 inline constexpr double kPlainer = 1.001;    // the same, for one with a figure less
 inline constexpr double kMovesFarBetter = 0.1;  // the same, where more than noise is left
 inline constexpr double kMovesBetter = 0.8;  // of the squares left: it agrees, and is better still
+inline constexpr double kOfTheirOwn =
+    0.3;  // of what is left: the equations leave it of the law's own motion
+inline constexpr int kCorrections = 4;
+inline constexpr double kMostError = 0.5;   // of a figure and its deviation, by which equations err
+inline constexpr double kCorrected = 0.3;   // deviations: no other correction
+inline constexpr double kErrorStays = 0.5;  // of that, where it was taken off
 inline constexpr double kAgree = 3.0;  // deviations of the difference between it and the equations
 
 }  // namespace dampline::app::rig
