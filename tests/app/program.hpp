@@ -12,7 +12,13 @@
 
 namespace dampline::app {
 
-/// The built program as a person runs it, in a folder of its own that goes away with it.
+/// Where the program stands: the build, or what DAMPLINE_BINARY_DIR names.
+inline std::string binary_dir() {
+  const char* const given = std::getenv("DAMPLINE_BINARY_DIR");
+  return given != nullptr ? given : DAMPLINE_BINARY_DIR;
+}
+
+/// The program as a person runs it, in a folder of its own that goes away with it.
 class Program {
  public:
   struct Outcome {
@@ -36,9 +42,8 @@ class Program {
   /// Runs `dampline ARGUMENTS` by the shell, in the folder; `before` may set limits or pipe into
   /// it.
   Outcome run(const std::string& arguments, const std::string& before = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && " + before +
-                                " '" DAMPLINE_BINARY_DIR "/dampline' " + arguments +
-                                " > .stdout 2> .stderr";
+    const std::string command = "cd '" + folder_.string() + "' && " + before + " '" + binary_dir() +
+                                "/dampline' " + arguments + " > .stdout 2> .stderr";
     const int status = std::system(command.c_str());  // NOLINT(cert-env33-c) a test of the program
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read(".stdout"), read(".stderr")};
   }

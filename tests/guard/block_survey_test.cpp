@@ -126,6 +126,49 @@ TEST(BlockSurvey, WithoutCoherenceThereIsNoDelay) {
   EXPECT_EQ(survey_of(sums).coherent_share, 0.0);
 }
 
+TEST(BlockSurvey, ABinThatIsHardlyCoherentTellsTheDelay) {
+  constexpr std::size_t kLowest = 7;  // 4.1 Hz
+  SpectrumSums sums = sums_of({});
+  for (auto& cross : sums.aligned) cross = 0.0;
+  sums.aligned[kLowest] = 0.1 * turned_by(0.002, kLowest);
+  EXPECT_NEAR(survey_of(sums).delay_s, 0.002, 1e-12);
+}
+
+// What a sensor without a signal, or wheelsets at rest, make is told in numbers.
+TEST(BlockSurvey, OfADeadChannelAllFiguresAreNumbers) {
+  for (std::size_t dead = 0; dead < 3; ++dead) {
+    SpectrumSums sums = sums_of({.late_s = 0.0007});
+    auto& power = dead == 0 ? sums.frame : dead == 1 ? sums.wheelset1 : sums.wheelset2;
+    power.fill(0.0);
+    if (dead == 1) sums.delayed1.fill(0.0);
+    if (dead == 0) {
+      for (auto& to : sums.frame_to) to.fill({});
+    } else {
+      sums.wheelsets.fill({});
+      sums.aligned.fill({});
+      sums.frame_to[dead - 1].fill({});
+    }
+    const BlockFigures figures = survey_of(sums, {.corner_hz = 100.0});
+    for (const double figure :
+         {figures.density,       figures.coherent_share,   figures.delay_s,      figures.log_gain,
+          figures.frame_power,   figures.wheelset_mps2,    figures.follow[0],    figures.follow[1],
+          figures.following,     figures.noise[0],         figures.noise[1],     figures.noise[2],
+          figures.frame_in_band, figures.incoherent_share, figures.folded_share, figures.incoherent,
+          figures.match,         figures.lag_s[0],         figures.lag_s[1],     figures.lag_s[2]})
+      EXPECT_TRUE(std::isfinite(figure)) << dead;
+    for (const double noise : figures.noise) EXPECT_GE(noise, 0.0) << dead;
+    EXPECT_EQ(figures.coherent_share, dead == 0 ? 1.0 : 0.0);
+    EXPECT_NEAR(std::abs(figures.match), dead == 0 ? 0.97 : 0.0, 0.02);
+    EXPECT_FALSE(figures.has_lag) << "behind all three";
+    EXPECT_EQ(figures.log_gain < -10.0, dead == 1);
+    EXPECT_EQ(figures.log_gain > 10.0, dead == 2);
+  }
+  SpectrumSums still = sums_of({});
+  for (auto* power : {&still.wheelset1, &still.wheelset2, &still.delayed1, &still.mean})
+    power->fill(0.0);
+  EXPECT_GT(survey_of(still).frame_power, 1e6);
+}
+
 TEST(BlockSurvey, ABinWeighsFiftyAtMost) {
   SpectrumSums sums = sums_of({});
   sums.aligned[50] = std::sqrt(0.9);
@@ -337,7 +380,8 @@ TEST(WhiteAndFolded, TellsAConstantFromAShape) {
 TEST(BlockSurvey, TellsWhatIsFoldedFromNoise) {
   const AntiAliasConfig filter{.corner_hz = 100.0};
   for (const double noise : {0.002, 0.02}) {
-    for (const double folded : {0.0, 1.0}) {
+    for (const auto& [folded, unit] :
+         {std::pair{0.0, 1.0}, std::pair{1.0, 1.0}, std::pair{0.0, 1e-4}, std::pair{1.0, 1e4}}) {
       SpectrumSums sums = sums_of({});
       for (std::size_t k = 146; k < kSpectrumBins; ++k) {
         const double from_hz = kSurveyRateHz - kBinHz * static_cast<double>(k);
@@ -345,8 +389,12 @@ TEST(BlockSurvey, TellsWhatIsFoldedFromNoise) {
         const double apart = noise + folded * passed * std::pow(150.0 / from_hz, 4);
         sums.aligned[k] = 1.0 - apart;
       }
+      for (auto* power : {&sums.wheelset1, &sums.wheelset2, &sums.delayed1})
+        for (double& bin : *power) bin *= unit;
+      for (auto* cross : {&sums.wheelsets, &sums.aligned})
+        for (auto& bin : *cross) bin *= unit;
       const BlockFigures figures = survey_of(sums, filter);
-      const double both = figures.noise[1] + figures.noise[2];
+      const double both = (figures.noise[1] + figures.noise[2]) / unit;
       EXPECT_NEAR((1.0 - figures.folded_share) * both, 2.0 * noise * kDensity,
                   0.02 * noise * kDensity)
           << noise << ' ' << folded;

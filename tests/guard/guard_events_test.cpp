@@ -274,6 +274,35 @@ TEST(GuardCodes, RepeatedSamplesAreTheirExcess) {
   EXPECT_EQ(fault->time_s, 600 / 300.0) << "the first of them";
 }
 
+TEST(GuardCodes, RepeatedSamplesAreToldAgainWhereTheyCameAgain) {
+  std::array<double, 3> last{};
+  Codes codes;
+  codes.run(9001, [&](Sample& sample) {
+    const std::int64_t since = sample.tick % 6000 - 600;
+    if (since >= 0 && since < 900 && since % 100 == 0) sample.accel_mps2 = last;
+    last = sample.accel_mps2;
+  });
+  const Fault* const fault = codes.find(FaultKind::kRepeatedSamples);
+  ASSERT_NE(fault, nullptr);
+  EXPECT_EQ(fault->count, 2U);
+  EXPECT_EQ(fault->size, 18.0);
+  EXPECT_EQ(fault->time_s, 600 / 300.0);
+  EXPECT_EQ(fault->last_s, 6600 / 300.0);
+}
+
+// Five seconds on either side: a level that was clipped or held is none.
+TEST(GuardCodes, TakesAJumpBesideAChannelThatClipsForNone) {
+  for (const auto& [off_s, named] : {std::pair{-6.5, true}, std::pair{-4.5, false},
+                                     std::pair{4.5, false}, std::pair{6.5, true}}) {
+    Codes codes;
+    codes.run(20'000, [at = 9000 + std::llround(off_s * 300.0)](Sample& sample) {
+      if (sample.tick >= 9000) sample.accel_mps2[0] += 0.8;
+      if (sample.tick == at) sample.saturated = 1;
+    });
+    EXPECT_EQ(codes.find(FaultKind::kDcJump) != nullptr, named) << off_s;
+  }
+}
+
 TEST(GuardCodes, JudgesTheRestOfTheRecord) {
   Codes codes;
   const auto coarse = [](Sample& sample) {

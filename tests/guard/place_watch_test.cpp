@@ -83,6 +83,15 @@ TEST(PlaceWatch, KnowsNothingBeforeSixBlocks) {
   EXPECT_GT(blocks.figures().foreign_share, 0.0);
 }
 
+TEST(PlaceWatch, WorksABlockOffInSixteenCalls) {
+  const auto sums = std::make_unique<SpectrumSums>();
+  FaultLog log{kPlaceRateHz};
+  PlaceWatch watch{kPlaceRateHz};
+  watch.start(*sums, {});
+  for (int call = 1; call < 16; ++call) EXPECT_FALSE(watch.advance(log)) << call;
+  EXPECT_TRUE(watch.advance(log));
+}
+
 TEST(PlaceWatch, SeesNothingWhereTheFrameFollowsTheMean) {
   SeenBlocks blocks;
   blocks.add(10);
@@ -127,6 +136,26 @@ TEST(PlaceWatch, MeasuresTheGainOfWheelsetOne) {
   blocks.gain1 = [](double) { return 1.07; };
   blocks.add(40);
   EXPECT_NEAR(blocks.figures().gain, 0.07, 0.01);
+}
+
+// At low rates the band of pitch has more bins than are kept: the lower sixteen, 3.5 to 6.4 Hz at
+// 100 samples a second.
+TEST(PlaceWatch, LooksAtTheLowestSixteenBinsOfABand) {
+  for (const auto& [bin, inside] :
+       {std::pair{17U, false}, std::pair{18U, true}, std::pair{33U, true}, std::pair{34U, false}}) {
+    const auto sums = std::make_unique<SpectrumSums>();
+    for (std::size_t k = 1; k < kSpectrumBins; ++k)
+      sums->wheelset1[k] = sums->wheelset2[k] = sums->mean[k] = 1.0;
+    sums->wheelset1[bin] = 49.0;
+    FaultLog log{100.0};
+    PlaceWatch watch{100.0};
+    for (int block = 0; block < 6; ++block) {
+      watch.start(*sums, {.density = 1.0});
+      while (!watch.advance(log)) {
+      }
+    }
+    EXPECT_NEAR(watch.misplacement().gain, inside ? 1.0 : 0.0, 1e-12) << bin;
+  }
 }
 
 double ringing_gain(double hz, double resonance_hz) {

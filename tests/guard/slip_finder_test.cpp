@@ -151,6 +151,22 @@ TEST(SlipFinder, StartsAnewAfterARestart) {
   EXPECT_EQ(feed.found, 0);
 }
 
+// A slip is reported once, and two delays are waited for; not beyond a restart.
+TEST(SlipFinder, FindsAnotherSlipSoonAfterARestart) {
+  ChunkFeed feed;
+  feed.delay = 92;
+  feed.feed(80, {});
+  feed.feed(23, kSlipped);
+  while (feed.found == 0) feed.feed(1, {});
+  feed.restart();
+  feed.delay = 8;
+  feed.sigma = 0.01;
+  feed.feed(12, {});
+  feed.feed(2, kSlipped);
+  feed.feed(12, {});
+  EXPECT_EQ(feed.found, 2);
+}
+
 TEST(SlipFinder, TellsTwoSlips) {
   ChunkFeed feed;
   EXPECT_TRUE(feed.finds(kSlipped));
@@ -225,6 +241,21 @@ TEST(WheelsetWatch, NamesSamplesLostOrRepeatedInBoth) {
       EXPECT_FALSE(wheelsets.log().spoilt(fault.kind, FaultChannel::kAll, tick + 600));
     }
   }
+}
+
+// Sixteen samples before it, and the delay after it. It is seen three samples late.
+TEST(WheelsetWatch, SpoilsWhatLiesRoundASlip) {
+  const auto spoils = [](int before, std::int64_t tick) {
+    TwoWheelsets wheelsets;
+    wheelsets.run(before);
+    wheelsets.lose(1);
+    wheelsets.run(4500);
+    return wheelsets.log().spoilt(FaultKind::kLostSamples, FaultChannel::kAll, tick);
+  };
+  EXPECT_TRUE(spoils(9010, 8999));
+  EXPECT_FALSE(spoils(9019, 8999));
+  EXPECT_FALSE(spoils(9270, 9300));
+  EXPECT_TRUE(spoils(9285, 9300));
 }
 
 TEST(WheelsetWatch, FourSamplesAreTooManyToTell) {
@@ -313,6 +344,17 @@ TEST(WheelsetWatch, SeesWhereOneWheelsetMovesByWholeSamplesForGood) {
     }
     EXPECT_TRUE(wheelsets.log().faults().empty());
   }
+}
+
+// A slip of two samples that ended a second before is not where one sample went for good.
+TEST(WheelsetWatch, ASlipThatEndedIsNoJump) {
+  TwoWheelsets wheelsets;
+  wheelsets.run(30'000);
+  wheelsets.lose(2);
+  wheelsets.run(330);
+  wheelsets.late2 = 1;
+  wheelsets.run(2000);
+  EXPECT_EQ(wheelsets.watch().jump_tick(), -1);
 }
 
 // Of normal noise half of the chunks of eight differ by less than 0.957 of its deviation.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -53,6 +54,21 @@ TEST(SpikeWatch, AWrongSampleIsAboveTen) {
   EXPECT_TRUE(found[0].digital);
   EXPECT_EQ(found[0].height, 34);
   EXPECT_EQ(strikes_of({{301, -31}})[0].height, -34);
+}
+
+// What neighbours say of a sample is exact where the motion is a polynomial of third order.
+TEST(SpikeWatch, TheHeightOfAWrongSampleIsOffACubic) {
+  constexpr std::int64_t kWrong = 300;
+  SpikeWatch watch{kSegment};
+  std::vector<Strike> all;
+  for (std::int64_t tick = 0; tick < kSegment; ++tick) {
+    const std::int64_t n = std::clamp<std::int64_t>(tick - kWrong, -20, 20);
+    watch.update(tick, n * n * n - 5 * n * n + 70 * n + (tick == kWrong ? 5000 : 0));
+    for (Strike strike; watch.next(strike);)
+      if (strike.tick == kWrong) all.push_back(strike);
+  }
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].height, 5000);
 }
 
 TEST(SpikeWatch, AWrongSampleLeavesItsNeighboursAsUsual) {

@@ -382,18 +382,20 @@ TEST(TimingWatch, MayDiscardAllSegments) {
 }
 
 TEST(TimingWatch, DiscardsSegmentsFromATickOn) {
-  Blocks blocks;
-  const auto late = [](std::int64_t tick) {
-    return tick < 12 * kBlock ? kUsualS : kUsualS + 0.002;
-  };
-  blocks.set_segments([&](std::int64_t tick, const Shown&) { return late(tick); });
-  blocks.show(12, {.has_lag = false});
-  for (int i = 0; i < 6; ++i) {
-    blocks.show({.delay_s = kUsualS + 0.002, .has_lag = false});
-    blocks.watch().discard_segments(12 * kBlock);
+  for (const bool each_block : {false, true}) {
+    Blocks blocks;
+    blocks.set_segments([](std::int64_t tick, const Shown&) {
+      return tick < 12 * kBlock ? kUsualS : kUsualS + 0.002;
+    });
+    blocks.show(12, {.has_lag = false});
+    for (int i = 0; i < 6; ++i) {
+      const std::int64_t began = blocks.now();
+      blocks.show({.delay_s = kUsualS + 0.002, .has_lag = false});
+      blocks.watch().discard_segments(each_block ? began : 12 * kBlock);
+    }
+    EXPECT_TRUE(blocks.faults().empty());
+    EXPECT_EQ(blocks.speed_changes(), 1U);
   }
-  EXPECT_TRUE(blocks.faults().empty());
-  EXPECT_EQ(blocks.speed_changes(), 1U);
 }
 
 }  // namespace
