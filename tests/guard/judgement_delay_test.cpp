@@ -117,6 +117,17 @@ TEST(JudgementDelay, LeavesOutAJumpOfTheZeroAndABurst) {
   EXPECT_FALSE(spoilt(burst, 140.0));
 }
 
+TEST(JudgementDelay, LeavesOutWhereSamplesWereLostOrRepeatedAndNotCounted) {
+  sim::RecordFaultConfig lost;
+  lost.start_s = 90.0;
+  lost.lost_everywhere = 2;
+  sim::RecordFaultConfig counted;
+  counted.start_s = 90.0;
+  counted.counted_lost = 2;
+  EXPECT_GT(hold(record_of(150.0, lost)).counts.spoilt, 0U);
+  EXPECT_EQ(hold(record_of(150.0, counted)).counts.spoilt, 0U) << "the ticks show it";
+}
+
 TEST(JudgementDelay, MakesAnEstimateFromARecordWithSpikes) {
   sim::RecordFaultConfig faults;
   faults.spikes[1] = 30;

@@ -212,5 +212,65 @@ TEST(PlaceWatch, TakesLinesForNoMount) {
   EXPECT_TRUE(blocks.log().faults().empty());
 }
 
+/// Wheelsets that are white, and a frame that is so but for one band of five bins.
+class OneBand {
+ public:
+  /// A block whose frame has so much more power in the band.
+  void show(std::size_t band, double power) {
+    for (std::size_t k = 1; k < kSpectrumBins; ++k) {
+      const std::size_t from_hz15 = k - 26;
+      sums_->wheelset1[k] = sums_->wheelset2[k] = sums_->delayed1[k] = sums_->mean[k] = 1.0;
+      sums_->frame[k] = k >= 26 && from_hz15 / 5 == band ? power : 1.0;
+    }
+    watch_.start(*sums_, {.density = 1.0});
+    while (!watch_.advance(log_)) {
+    }
+  }
+  [[nodiscard]] const Fault* fault() const {
+    return log_.find(FaultKind::kRingingMount, FaultChannel::kFrame);
+  }
+
+ private:
+  std::unique_ptr<SpectrumSums> sums_ = std::make_unique<SpectrumSums>();
+  FaultLog log_{kPlaceRateHz};
+  PlaceWatch watch_{kPlaceRateHz};
+};
+
+// A band stands over those three to five beside it: of 38 bands from 15 Hz on, the sixth to the
+// sixth from the end.
+TEST(PlaceWatch, SeesAPeakWithFiveBandsOnEitherSide) {
+  for (const auto& [band, seen] :
+       {std::pair{4U, false}, std::pair{5U, true}, std::pair{32U, true}, std::pair{33U, false}}) {
+    OneBand ringing;
+    for (int block = 0; block < 3; ++block) ringing.show(band, 10.0);
+    ASSERT_EQ(ringing.fault() != nullptr, seen) << band;
+    if (!seen) continue;
+    EXPECT_NEAR(ringing.fault()->size, (26.0 + 5.0 * band + 2.0) * kPlaceBinHz, 1e-9);
+  }
+}
+
+TEST(PlaceWatch, APeakIsFourTimesWhatIsBesideIt) {
+  for (const auto& [power, seen] : {std::pair{3.9, false}, std::pair{4.1, true}}) {
+    OneBand ringing;
+    for (int block = 0; block < 3; ++block) ringing.show(15, power);
+    EXPECT_EQ(ringing.fault() != nullptr, seen) << power;
+  }
+}
+
+TEST(PlaceWatch, APeakStandsForThreeBlocksInARowAndMovesByABandAtMost) {
+  const auto seen = [](std::initializer_list<std::pair<std::size_t, double>> blocks) {
+    OneBand ringing;
+    for (const auto& [band, power] : blocks) ringing.show(band, power);
+    return ringing.fault() != nullptr;
+  };
+  EXPECT_TRUE(seen({{15, 9.0}, {15, 9.0}, {15, 9.0}}));
+  EXPECT_TRUE(seen({{15, 9.0}, {16, 9.0}, {15, 9.0}}));
+  EXPECT_TRUE(seen({{15, 9.0}, {14, 9.0}, {14, 9.0}}));
+  EXPECT_FALSE(seen({{15, 9.0}, {17, 9.0}, {17, 9.0}}));
+  EXPECT_FALSE(seen({{15, 9.0}, {13, 9.0}, {13, 9.0}}));
+  EXPECT_FALSE(seen({{15, 9.0}, {15, 9.0}, {15, 3.0}, {15, 9.0}, {15, 9.0}}));
+  EXPECT_TRUE(seen({{15, 3.0}, {15, 9.0}, {15, 9.0}, {15, 9.0}}));
+}
+
 }  // namespace
 }  // namespace dampline

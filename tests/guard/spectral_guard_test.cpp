@@ -218,6 +218,8 @@ TEST(SpectralGuard, NamesARateThatTheDelayContradicts) {
     if (!named) continue;
     EXPECT_EQ(fault->channel, FaultChannel::kAll);
     EXPECT_NEAR(fault->size, factor * 300.0, 0.05);
+    EXPECT_NEAR(fault->time_s, 54.1, 0.1)
+        << "the delay is known from three blocks on, and four tell";
   }
   for (const bool speed : {true, false}) {
     GuardConfig config = declared();
