@@ -55,6 +55,10 @@ TEST(CandumpLine, ReadsNineDecimals) {
   EXPECT_EQ(parse("(0.000000001) can0 0D0#").frame.time_ns, 1);  // relative times
 }
 
+TEST(CandumpLine, ReadsTheLatestTimeThatFits) {
+  EXPECT_EQ(parse("(9223372035.999999) can0 0D0#").frame.time_ns, 9'223'372'035'999'999'000);
+}
+
 /// What a parser that has read another line before makes of this one is what a new one makes of it.
 TEST(CandumpLine, ReadsEveryLineAsIfItWereTheFirst) {
   const std::string digits = "0123456789";
@@ -67,8 +71,10 @@ TEST(CandumpLine, ReadsEveryLineAsIfItWereTheFirst) {
     }
   }
   for (const char c : digits) lines.push_back("(1631416514." + std::string(6, c) + ") can0 0D0#A8");
+  lines.push_back(std::string(12, '\0') + "123456) can0 0D0#A8");
   for (const char* line :
-       {"(1631416514.736052123) can0 0D0#A8", "(1631416514.736052) .123456) 0D0#A8",
+       {"(1234567.123456789) can0 0D0#A8", "(1631416514.7360521) can0 0D0#A8",
+        "(1631416514.736052123) can0 0D0#A8", "(1631416514.736052) .123456) 0D0#A8",
         "(1.000000) .123456) can0 0D0#A8", "(1.000000) .123457) 0D0#A8", "(1.000000) .1) 0D0#A8",
         "(1631416515.000001) can0 0D0#A8", "(1631416514.", "(1631416514.736052)", "(163"})
     lines.emplace_back(line);
@@ -149,6 +155,10 @@ TEST(CandumpLine, ReadsWhatCanUtilsAllows) {
   EXPECT_EQ(parse("(1.000000) can0 123#11.22.33").frame.length, 3);
   EXPECT_EQ(parse("(1.000000) can012345678901 123#").interface, "can012345678901");
   EXPECT_EQ(parse("(1.000000) can0 123#1122334455667788_C").frame.length, 8);
+  EXPECT_EQ(parse("(1.000000) a 123#").interface, "a");
+  EXPECT_EQ(parse("(1.000000)   can0 123#").interface, "can0") << "set right";
+  EXPECT_EQ(parse("(1.000000) can0 7FF#").frame.id, 0x7FFU);
+  EXPECT_EQ(parse("(1.000000) can0 1FFFFFFF#").frame.id, 0x1FFFFFFFU);
 }
 
 struct Bad {
@@ -175,7 +185,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"(1.000000) can0 123#112233445566778899", 36}, Bad{"(1.000000) can0 123#1G", 20},
         Bad{"(1.000000) can0123456789012 123#", 27}, Bad{"(-1.000000) can0 123#", 1},
         Bad{"(9223372036.000000) can0 123#", 11}, Bad{"(99999999999999.000000) can0 123#", 12},
-        Bad{"(1.000000) c\xC3\xA4n 123#", 12}));
+        Bad{"(1.000000) c\xC3\xA4n 123#", 12}, Bad{"(1.000000) c\x7F 123#", 12},
+        Bad{"(1:.000000) can0 123#", 2}, Bad{"(1.00000000000) can0 123#", 13},
+        Bad{"(1.000000) can0 1234567890#", 25}, Bad{"(1.000000) can0 123#1:", 20},
+        Bad{"(1.000000) can0 123#11 A", 23}, Bad{"(1.000000) can0 123#11223344556677_C", 34},
+        Bad{"(1.000000) can0 123#1122334455667788_G", 36},
+        Bad{"(1.000000) can0 123#1122334455667788_", 36}, Bad{"(1.000000)  ", 12},
+        Bad{"(1.000000) can0#123#", 15}, Bad{"(1.000000) can0 123##G", 21}));
 
 }  // namespace
 }  // namespace dampline::drivers

@@ -42,6 +42,8 @@ TEST(CandumpWriter, WritesTheOtherKindsOfFrames) {
   CanFrame remote = frame_of(0, 0x123, {});
   remote.remote = true;
   EXPECT_EQ(line_of(remote, "can0"), "(0000000000.000000) can0 123#R\n");
+  remote.length = 1;
+  EXPECT_EQ(line_of(remote, "can0"), "(0000000000.000000) can0 123#R1\n");
   remote.length = 8;
   EXPECT_EQ(line_of(remote, "can0"), "(0000000000.000000) can0 123#R8\n");
   CanFrame error = frame_of(0, 0x40, {0, 0, 0, 0, 0, 0, 0, 0});  // bus-off
