@@ -56,6 +56,27 @@ TEST(RigIdentifier, UsesTheMeasuredVelocityWhereThereIsOne) {
   EXPECT_LT(percent(run.of(rig::Parameter::kViscousPositive).value, 1500.0), 1.0);
 }
 
+TEST(RigPredictor, PassesOverSamplesWhoseTicksDoNotRise) {
+  const auto record = damper_record(10.0, true);
+  std::vector<rig::Sample> twice;
+  for (const rig::Sample& sample : record) {
+    twice.push_back(sample);
+    twice.push_back(sample);
+    twice.back().force_n = 1e6;
+  }
+  const rig::Config config = run_rig(record, kRateHz, kDamper).config;
+  const auto errors_of = [&](const std::vector<rig::Sample>& samples) {
+    const auto identifier = identify(record, config);
+    const auto predictor = std::make_unique<rig::Predictor>(config, identifier->solution(kDamper),
+                                                            identifier->block_samples());
+    rig::Prediction prediction;
+    for (const rig::Sample& sample : samples) predictor->update(sample, prediction);
+    return predictor->errors();
+  };
+  EXPECT_EQ(errors_of(twice).samples, errors_of(record).samples);
+  EXPECT_EQ(errors_of(twice).nmse, errors_of(record).nmse);
+}
+
 TEST(RigIdentifier, DrawsBothBranchesOfTheCurveWithTheirSupport) {
   const auto record = damper_record(30.0, false);
   const RigRun run = run_rig(measure(record, {1e-6, 0.0, 20.0, 0.0}, 5), kRateHz, kDamper);
