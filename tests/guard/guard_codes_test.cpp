@@ -230,6 +230,8 @@ TEST(GuardCodes, ThreeLeapsToOneCodeAreALooseContact) {
   EXPECT_EQ(contact_of(two, {1500, 1500}, 5), nullptr);
   Codes different;
   EXPECT_EQ(contact_of(different, {1500, 1600, 1500, 1600, 1500}, 5), nullptr);
+  Codes other;
+  EXPECT_EQ(contact_of(other, {1600, 1500, 1500}, 5), nullptr) << "two of one code";
   Codes brief;
   EXPECT_EQ(contact_of(brief, {1500, 1500, 1500}, 3), nullptr) << "three samples are motion";
   Codes four;
@@ -249,6 +251,25 @@ TEST(GuardCodes, AContactLeapsByThreeDeviations) {
                                              std::tuple{25, 6, false}, std::tuple{35, 6, true}}) {
     Codes codes;
     EXPECT_EQ(contact_of(codes, {code, code, code}, samples) != nullptr, named) << code;
+  }
+}
+
+// Of a channel that hardly moves: six codes.
+TEST(GuardCodes, AContactLeapsBySixCodesAtLeast) {
+  for (const auto& [code, named] : {std::pair{5, false}, std::pair{7, true}}) {
+    Codes codes;
+    const auto quiet = [](Sample& sample) {
+      const std::int64_t end = sample.tick % 900 == 5 ? 60 : sample.tick % 900 == 450 ? -60 : 0;
+      sample.accel_mps2[1] = Codes::code(end != 0 ? end : sample.tick % 2);
+    };
+    codes.run(3050, quiet);
+    codes.run(500, quiet);
+    for (int i = 0; i < 3; ++i) {
+      codes.run(100, quiet);
+      leap(codes, code, 6);
+    }
+    codes.run(20, quiet);
+    EXPECT_EQ(codes.find(FaultKind::kStuckChannel) != nullptr, named) << code;
   }
 }
 
