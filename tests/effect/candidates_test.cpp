@@ -263,6 +263,10 @@ TEST(CandidateSlopes, AreNoneWithoutAGridNorBetweenItsPoints) {
   Candidate pair = point(Effect::kBacklash, 2);
   pair.count = 2;
   EXPECT_EQ(with_slopes(pair, Grids{}).slopes, 0U);
+  EXPECT_TRUE(is_pair(pair)) << "two neighbours";
+  EXPECT_FALSE(is_pair(with_slopes(point(Effect::kBacklash, 2), Grids{}))) << "a law and its slope";
+  pair.effect = Effect::kAsymmetricViscous;
+  EXPECT_FALSE(is_pair(pair)) << "two sides";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "dampline/effect/conclusion.hpp"
@@ -19,6 +20,29 @@ Explanation with_step(Effect effect, std::uint8_t form, std::uint8_t variant, do
   step.chosen.variant = variant;
   step.place = place;
   return out;
+}
+
+/// Neighbours of a grid, the one over the other.
+template <std::size_t N>
+void expect_ratio(const std::array<double, N>& grid, double ratio, double tolerance) {
+  for (std::size_t i = 1; i < N; ++i) EXPECT_NEAR(grid[i] / grid[i - 1], ratio, tolerance) << i;
+}
+
+// What is told between two points is told by its logarithm.
+TEST(Grids, RiseByTheSameFactor) {
+  expect_ratio(kWidthMps, std::sqrt(2.0), 0.03);
+  expect_ratio(kStribeckMps, 2.0, 1e-12);
+  expect_ratio(kRelaxationS, 2.2, 0.03);
+  expect_ratio(kDahlDistance, std::pow(10.0, 0.2), 0.04);
+  expect_ratio(kBacklashGap, 1.5, 0.05);
+  expect_ratio(kFlexibleHz, 1.1, 0.01);
+  expect_ratio(kBumpGap, std::sqrt(2.0), 0.19);
+  for (std::size_t i = 0; i < kPitchModes; ++i) {
+    EXPECT_EQ(kPitch[i].frequency_hz, kPitch[i % kPitchFrequencies].frequency_hz);
+    EXPECT_EQ(kPitch[i].slip_m, 0.4e-3 * std::exp2(i / kPitchFrequencies));
+  }
+  expect_ratio(std::array{kPitch[0].frequency_hz, kPitch[1].frequency_hz, kPitch[2].frequency_hz},
+               1.6, 0.02);
 }
 
 TEST(Grids, DrawTogetherAroundALength) {

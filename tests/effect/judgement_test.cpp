@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <tuple>
 
 namespace dampline::effect {
 namespace {
@@ -51,6 +52,17 @@ TEST(Judgement, AnImpossibleLawExplainsNothing) {
   EXPECT_FALSE(is_possible(e));
 }
 
+TEST(Conclusion, AModelIsPossibleWithFrictionAndASpringAboveNothing) {
+  Explanation e;
+  for (const auto& [coulomb, stiffness, possible] :
+       {std::tuple{1.0, 1.0, true}, std::tuple{0.0, 1.0, false}, std::tuple{1.0, 0.0, false},
+        std::tuple{-1.0, 1.0, false}, std::tuple{1.0, -1.0, false}}) {
+    e.final_coulomb_n.value = coulomb;
+    e.final_stiffness_npm.value = stiffness;
+    EXPECT_EQ(is_possible(e), possible) << coulomb << ' ' << stiffness;
+  }
+}
+
 /// What is concluded of an error so many times the floor.
 Conclusion concluded(double ratio, std::uint64_t impacts, bool step) {
   Explanation e = explained_by_one_effect(0.5);
@@ -72,6 +84,8 @@ TEST(Conclusion, IsOfTheErrorOverItsFloor) {
   EXPECT_EQ(concluded(1.51, 10, false), Conclusion::kUnexplained);
   EXPECT_EQ(concluded(1.49, 0, true), Conclusion::kExplained);
   EXPECT_EQ(concluded(1.51, 0, true), Conclusion::kPartlyExplained);
+  EXPECT_EQ(concluded(1.5, 0, true), Conclusion::kExplained) << "above it is partly";
+  EXPECT_EQ(concluded(1.25, 0, false), Conclusion::kComplete);
   EXPECT_EQ(concluded(0.0, 0, false), Conclusion::kComplete) << "without a floor";
 }
 

@@ -35,6 +35,32 @@ TEST(Laws, PolynomialsAndContactsAreWhatTheyAreCalled) {
   EXPECT_FLOAT_EQ(down[kProgressiveAbsolute], -2.5e-3F);  // |y| sign v
 }
 
+// A cubic polynomial of time between two samples, and its slopes there; what has no slope of its
+// own lies on a straight line.
+TEST(Hermite, IsExactForACubicAndStraightForItsSlopes) {
+  constexpr double kLongS = 0.004;
+  const auto x = [](double t, double k) {
+    return k * (3.0 - 2.0 * t + 5e2 * t * t - 3e4 * t * t * t);
+  };
+  const auto rate = [](double t, double k) { return k * (-2.0 + 1e3 * t - 9e4 * t * t); };
+  const auto instant = [&](double t) {
+    const auto slope = [&](double k) { return Slope{x(t, k), rate(t, k)}; };
+    return Instant{slope(1.0), slope(2.0), slope(-3.0), slope(0.5), 40.0 * t};
+  };
+  for (const double u : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+    const Point p = Hermite::at(u, kLongS)(instant(0.0), instant(kLongS));
+    const double t = u * kLongS;
+    EXPECT_NEAR(p.deflection_m, x(t, 1.0), 1e-12);
+    EXPECT_NEAR(p.velocity_mps, x(t, 2.0), 1e-12);
+    EXPECT_NEAR(p.wheelset1_mps, x(t, -3.0), 1e-12);
+    EXPECT_NEAR(p.wheelset2_mps, x(t, 0.5), 1e-12);
+    const auto straight = [&](double k) { return (1.0 - u) * rate(0.0, k) + u * rate(kLongS, k); };
+    EXPECT_NEAR(p.wheelset1_mps2, straight(-3.0), 1e-12);
+    EXPECT_NEAR(p.wheelset2_mps2, straight(0.5), 1e-12);
+    EXPECT_NEAR(p.turn_mps2, 40.0 * t, 1e-12);
+  }
+}
+
 TEST(Laws, StribeckFrictionFadesByItsSpeed) {
   Laws laws{{.scale_m = kScaleM}, kStepS};
   const LawValues out = laws(moving(0.0, 0.024));
