@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 namespace dampline {
 namespace {
@@ -210,6 +211,73 @@ TEST(PlaceWatch, TakesLinesForNoMount) {
   };
   blocks.add(10);
   EXPECT_TRUE(blocks.log().faults().empty());
+}
+
+/// Three segments whose half sum m and half difference d are 1 and c, 0 and 1, and nothing; the
+/// frame makes H_m m + H_d d of them and e in the third.
+struct Segments {
+  Complex shared{0.4, -0.3};  ///< c
+  Complex mean_gain{1.2, 0.1};
+  Complex difference_gain{0.15, -0.08};
+  Complex foreign{0.06, 0.02};
+  double unit{1.0};  ///< of all sensors
+
+  [[nodiscard]] std::unique_ptr<SpectrumSums> sums() const {
+    auto out = std::make_unique<SpectrumSums>();
+    for (const auto& [m, d, e] : {std::tuple{Complex{1.0}, shared, Complex{}},
+                                  std::tuple{Complex{}, Complex{1.0}, Complex{}},
+                                  std::tuple{Complex{}, Complex{}, foreign}}) {
+      const Complex first = unit * (m + d);
+      const Complex second = unit * (m - d);
+      const Complex frame = unit * (mean_gain * m + difference_gain * d + e);
+      for (std::size_t k = 1; k < kSpectrumBins; ++k) {
+        out->frame[k] += std::norm(frame);
+        out->wheelset1[k] += std::norm(first);
+        out->wheelset2[k] += std::norm(second);
+        out->delayed1[k] += std::norm(first);
+        out->mean[k] += std::norm(unit * m);
+        out->wheelsets[k] += std::conj(first) * second;
+        out->frame_to[0][k] += std::conj(first) * frame;
+        out->frame_to[1][k] += std::conj(second) * frame;
+      }
+    }
+    return out;
+  }
+};
+
+// By least squares in every bin: what m explains, what d explains beyond it, and what neither does.
+TEST(PlaceWatch, TellsTheShareOfMeanDifferenceAndWhatIsForeign) {
+  for (const double unit : {1.0, 1e-3, 50.0}) {
+    for (const double noise : {0.0, 0.004}) {
+      const Segments segments{.unit = unit};
+      const auto sums = segments.sums();
+      BlockFigures block;
+      block.density = 2e-3;
+      const double power = block.density * unit * unit;
+      // Three parts of white noise; the frame shows 1.4 times a quarter of each wheelset's.
+      block.noise = {power * noise, power * noise, power * noise};
+      FaultLog log{kPlaceRateHz};
+      PlaceWatch watch{kPlaceRateHz};
+      for (int i = 0; i < 8; ++i) {
+        watch.start(*sums, block);
+        while (!watch.advance(log)) {
+        }
+      }
+      const Misplacement found = watch.misplacement();
+      const double by_difference = std::norm(segments.difference_gain);
+      const double left = by_difference + std::norm(segments.foreign);
+      const double frame =
+          std::norm(segments.mean_gain + segments.difference_gain * segments.shared) + left;
+      EXPECT_NEAR(found.foreign_share, (left - 1.5 * (1.0 + 0.7) * noise) / frame, 1e-12);
+      EXPECT_NEAR(found.difference, 0.17, 1e-12);
+      EXPECT_NEAR(found.difference_share, by_difference / left, 1e-12);
+      EXPECT_NEAR(found.gain,
+                  std::sqrt((std::norm(1.0 + segments.shared) + 1.0) /
+                            (std::norm(1.0 - segments.shared) + 1.0)) -
+                      1.0,
+                  1e-12);
+    }
+  }
 }
 
 /// Wheelsets that are white, and a frame that is so but for one band of five bins.
