@@ -151,6 +151,30 @@ TEST(Explainer, ImpactsOnTheSurrogateTooAreNone) {
   EXPECT_EQ(taken_back.step_count, 0U);
 }
 
+// Root mean squares over the motion, standstill left out.
+TEST(Diagnosis, KnowsHowMuchTheFrameMoves) {
+  sim::Simulation simulation{sim::reference_run(sim::Load::kEmpty, 60.0, 5)};
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
+  const auto diagnosis = std::make_unique<Diagnosis>(EstimatorConfig{}, Grids{.scale_m = 2e-3});
+  EXPECT_EQ(diagnosis->velocity_rms_mps(), 0.0);
+  EXPECT_EQ(diagnosis->deflection_rms_m(), 0.0);
+  double velocity = 0.0;
+  double deflection = 0.0;
+  double count = 0.0;
+  for (int n = 0; n < 40 * sim::kSampleRateHz; ++n) {
+    const Sample sample = sim::to_sample(simulation.next());
+    const UpdateResult result = identifier->update(sample);
+    diagnosis->update(sample, result);
+    if (!result.has_motion || result.motion.still) continue;
+    velocity += result.motion.velocity_mps * result.motion.velocity_mps;
+    deflection += result.motion.deflection_m * result.motion.deflection_m;
+    count += 1.0;
+  }
+  diagnosis->finish();
+  EXPECT_NEAR(diagnosis->velocity_rms_mps() / std::sqrt(velocity / count), 1.0, 0.02);
+  EXPECT_NEAR(diagnosis->deflection_rms_m() / std::sqrt(deflection / count), 1.0, 0.02);
+}
+
 TEST(Explainer, TooShortARecordIsNotJudged) {
   EXPECT_EQ(explained("", 76, 20.0).explanation.conclusion, Conclusion::kNotReady);
 }

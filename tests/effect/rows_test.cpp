@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -58,6 +59,29 @@ TEST_F(HarmonicRows, IntegralsAndDerivativesComeWithoutIntegration) {
     EXPECT_NEAR(row[kWheelset1Twice], -sn / (kOmega * kOmega), 2e-3 / (kOmega * kOmega) * size);
     EXPECT_NEAR(row[kWheelset2Once], 0.0, 1e-9) << s;
     EXPECT_NEAR(row[kWheelset2Twice], 0.0, 1e-9) << s;
+  }
+}
+
+// Half of the turn's spring stands beside each 2 z_b, and what pushes goes off the target.
+TEST_F(HarmonicRows, AKnownTurnAddsItsSpringAndItsPush) {
+  const std::int64_t tick = 700;
+  std::array<Row, kScales> without;
+  for (std::size_t s = 0; s < kScales; ++s) without[s] = rows_.row(s, tick, raw_);
+  const auto spring_m = [](std::int64_t n) { return 1e-3 * static_cast<double>(n % 17); };
+  const auto push_mps2 = [](std::int64_t n) { return 0.2 * static_cast<double>(n % 13); };
+  for (std::int64_t n = 0; n < 1000; ++n) rows_.set_turn(n, spring_m(n), push_mps2(n));
+  for (std::size_t s = 0; s < kScales; ++s) {
+    const Row row = rows_.row(s, tick, raw_);
+    double spring = 0.0;
+    double push = 0.0;
+    std::int64_t n = tick - rows_.bank().half(s);
+    for (const double psi : rows_.bank().psi(s)) {
+      spring += psi * spring_m(n);
+      push += psi * push_mps2(n++);
+    }
+    EXPECT_NEAR(row[kFrameTwice] - without[s][kFrameTwice], 0.5 * spring, 1e-9) << s;
+    EXPECT_NEAR(row[kTarget] - without[s][kTarget], -push, 1e-9) << s;
+    EXPECT_EQ(row[kFrameOnce], without[s][kFrameOnce]);
   }
 }
 
