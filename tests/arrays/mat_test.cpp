@@ -88,6 +88,31 @@ TEST_F(Mat, GivesTheSameBytesAsTheTable) {
   EXPECT_EQ(state_of("o7.mat"), expected);
 }
 
+TEST_F(Mat, ReadsNumbersOfEveryType) {
+  program_.write("kinds.py", R"(
+import csv, numpy as np
+from scipy.io import savemat
+lines = list(csv.reader(open('a.csv')))
+names, table = lines[0], np.array([[float(c) for c in l] for l in lines[1:]])
+whole = {n: np.clip(np.rint(20 * table[:, i]), -100, 100) for i, n in enumerate(names)}
+for sign, shift, kinds in ('i', 0, 'f4 f8 i1 i2 i4 i8'), ('u', 100, 'u1 u2 u4 u8'):
+    columns = {n: table[:, i] if 'time' in n else whole[n] + shift for i, n in enumerate(names)}
+    with open(sign + '.csv', 'w') as out:
+        out.write(','.join(names) + chr(10))
+        for row in zip(*columns.values()): out.write(','.join(map(repr, map(float, row))) + chr(10))
+    for kind in kinds.split():
+        typed = {n: c if 'time' in n else c.astype(kind) for n, c in columns.items()}
+        savemat(kind + '.mat', typed, oned_as='column')
+)");
+  ASSERT_TRUE(shell("/usr/bin/python3 kinds.py")) << program_.read(".shell");
+  const StateBytes with_sign = state_of("i.csv");
+  for (const char* file : {"f4.mat", "f8.mat", "i1.mat", "i2.mat", "i4.mat", "i8.mat"})
+    EXPECT_EQ(state_of(file), with_sign) << file;
+  const StateBytes without = state_of("u.csv");
+  for (const char* file : {"u1.mat", "u2.mat", "u4.mat", "u8.mat"})
+    EXPECT_EQ(state_of(file), without) << file;
+}
+
 TEST_F(Mat, NamesWhatItCannotUse) {
   EXPECT_THAT(program_.run("identify text.mat").error, HasSubstr("holds no array of numbers"));
   EXPECT_THAT(program_.run("identify table.mat").error, HasSubstr("table_1"));
