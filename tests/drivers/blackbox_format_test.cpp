@@ -56,6 +56,28 @@ TEST(BlackboxFormat, IsTheDocumentedOne) {
   EXPECT_EQ(encoded(frame, 0x11223344, 0x55AA55AA), expected);
 }
 
+TEST(BlackboxFormat, TheHeaderIsTheDocumentedOne) {
+  Bytes expected(512);
+  const auto put = [&](std::size_t at, const Bytes& bytes) {
+    std::ranges::copy(bytes, expected.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  put(0, {0x89, 'D', 'B', 'B', '\r', '\n', 0x1A, '\n', 1, 0, 0x00, 0x06, 4, 3, 2, 1});
+  put(16, {0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 77, 0, 0, 0, 0, 0, 0, 0});
+  put(32, {0xFB, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 6});
+  put(48, {1});
+  put(64, {'c', 'a', 'n', '0'});
+  const std::uint32_t crc = crc32c(std::span{expected}.first(508));
+  for (unsigned i = 0; i < 4; ++i) expected[508 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+  expected.resize(1536);
+  std::ranges::copy(std::span{expected}.first(512), expected.begin() + 1024);
+  Bytes written(kRecordsAt, 0xEE);
+  encode_header(some_header(), std::span<std::uint8_t, kRecordsAt>{written});
+  EXPECT_EQ(written, expected);
+  const std::uint32_t seed =
+      crc32c(Bytes{0x88, 0x77, 0x66, 0x55, 0x44, 0x33, 0x22, 0x11, 4, 3, 2, 1});
+  EXPECT_EQ(some_header().checksum_seed(), seed) << "run number and file number";
+}
+
 TEST(BlackboxFormat, KeepsEveryFieldOfAFrame) {
   for (std::uint64_t i = 0; i < 200; ++i)
     ASSERT_TRUE(test::same(read_back(test::numbered_frame(i)), test::numbered_frame(i))) << i;
