@@ -73,6 +73,32 @@ TEST(BlackboxWriter, IsOnTheDiskWithinTheSyncInterval) {
   EXPECT_EQ(read_box(folder.path()).frames.size(), 1U);
 }
 
+// The folder goes, and a file stands in its place until it can be made again.
+TEST(BlackboxWriter, TriesToGoOnEveryRetryInterval) {
+  const BoxFolder folder;
+  BlackboxConfig config = test::box_config(folder.path());
+  config.retry_ns = 10 * kSecondNs;
+  const auto writer = open_box(config);
+  const auto records_at = [&](double time_s) {
+    writer->tick(static_cast<std::int64_t>(time_s * 1e9));
+    return writer->health().recording;
+  };
+  EXPECT_TRUE(records_at(0.0));
+  writer->write(numbered_frame(0));
+  EXPECT_TRUE(records_at(1.0));
+  std::filesystem::remove_all(folder.path());
+  test::write_bytes(folder.path(), "no folder");
+  writer->write(numbered_frame(1));
+  EXPECT_FALSE(records_at(3.0));
+  EXPECT_FALSE(records_at(13.0)) << "tried in vain";
+  std::filesystem::remove_all(folder.path());
+  EXPECT_FALSE(records_at(22.9)) << "ten seconds after that";
+  EXPECT_TRUE(records_at(23.0));
+  writer->write(numbered_frame(2));
+  writer->close();
+  EXPECT_EQ(read_box(folder.path()).frames.size(), 1U);
+}
+
 TEST(BlackboxWriter, RotatesBySize) {
   const BoxFolder folder;
   auto config = test::box_config(folder.path());
