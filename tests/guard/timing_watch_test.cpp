@@ -27,6 +27,8 @@ struct Shown {
 /// Feeds blocks and their segments; scatter of a microsecond to and fro.
 class Blocks {
  public:
+  explicit Blocks(double rate_hz = kTimingRateHz)
+      : log_{std::make_unique<FaultLog>(rate_hz)}, watch_{rate_hz} {}
   bool show(const Shown& shown) {
     const double off_s = count_ % 2 == 0 ? 1e-6 : -1e-6;
     BlockFigures block;
@@ -55,8 +57,8 @@ class Blocks {
   [[nodiscard]] std::int64_t now() const { return count_ * kBlock; }
 
  private:
-  std::unique_ptr<FaultLog> log_{std::make_unique<FaultLog>(kTimingRateHz)};
-  TimingWatch watch_{kTimingRateHz};
+  std::unique_ptr<FaultLog> log_;
+  TimingWatch watch_;
   GuardInputs inputs_;
   std::int64_t count_{0};
   std::function<double(std::int64_t, const Shown&)> segments_;
@@ -133,6 +135,16 @@ TEST(TimingWatch, ToleratesAFewHundredthsOfASample) {
   EXPECT_EQ(kind_of(frame_late(1.045 / kTimingRateHz)), FaultKind::kRepeatedSamples);
   EXPECT_EQ(kind_of(frame_late(-0.955 / kTimingRateHz)), FaultKind::kLostSamples);
   EXPECT_EQ(kind_of(frame_late(0.935 / kTimingRateHz)), FaultKind::kTimingStep);
+}
+
+// At 100 samples a second a quarter of a millisecond is a fortieth of a sample, and none is lost.
+TEST(TimingWatch, AStepOfHardlyAnythingIsNoWholeSample) {
+  for (const double late_s : {250e-6, -250e-6}) {
+    Blocks blocks{100.0};
+    blocks.show(12, {});
+    blocks.show(5, wheelset2_late(late_s));
+    expect_only(blocks, {FaultKind::kTimingStep, FaultChannel::kWheelset2, late_s}, 2e-6);
+  }
 }
 
 TEST(TimingWatch, NamesTheFrameThatIsOutOfStep) {
@@ -263,6 +275,24 @@ TEST(TimingWatch, WithoutLagsASuddenChangeIsAFault) {
     EXPECT_EQ(blocks.faults().size(), named ? 1U : 0U) << segments;
     EXPECT_EQ(blocks.speed_changes(), named ? 0U : 1U);
     if (named) expect_only(blocks, {FaultKind::kTimingStep, FaultChannel::kWheelsets, 0.002}, 2e-6);
+  }
+}
+
+// Eight seconds across six segments: what changed in a longer gap was not seen to be sudden.
+TEST(TimingWatch, AChangeAcrossALongGapIsNotSudden) {
+  for (const auto& [gap_s, named] : {std::pair{2.5, true}, std::pair{5.5, false}}) {
+    Blocks blocks;
+    const auto half = static_cast<std::int64_t>(0.5 * gap_s * kTimingRateHz);
+    const std::int64_t step = 12 * kBlock;
+    for (int block = 0; block < 18; ++block) {
+      const double delay_s = block < 12 ? kUsualS : kUsualS + 0.002;
+      const std::int64_t began = blocks.now();
+      for (std::int64_t tick = began; tick < began + kBlock; tick += kHop)
+        if (tick < step - half || tick >= step + half) blocks.watch().add_segment(tick, delay_s);
+      blocks.show({.delay_s = delay_s, .has_lag = false});
+    }
+    EXPECT_EQ(blocks.faults().size(), named ? 1U : 0U) << gap_s;
+    EXPECT_EQ(blocks.speed_changes(), named ? 0U : 1U);
   }
 }
 

@@ -82,6 +82,21 @@ TEST(WheelsetWatch, NamesSamplesLostOrRepeatedInBoth) {
   }
 }
 
+// Chunks of eight samples tell where: on the mean of the eight places in them to a sample.
+TEST(WheelsetWatch, TellsThePlaceOfASlipWithoutBias) {
+  double sum = 0.0;
+  for (int place = 0; place < 8; ++place) {
+    TwoWheelsets wheelsets;
+    wheelsets.run(9000 + place);
+    wheelsets.lose(1);
+    wheelsets.run(4500);
+    const Fault* const fault = wheelsets.log().find(FaultKind::kLostSamples, FaultChannel::kAll);
+    ASSERT_NE(fault, nullptr) << place;
+    sum += fault->time_s * 300.0 - (9000.0 + place);
+  }
+  EXPECT_NEAR(sum / 8.0, 0.0, 1.0);
+}
+
 // Sixteen samples before it, and the delay after it. It is seen three samples late.
 TEST(WheelsetWatch, SpoilsWhatLiesRoundASlip) {
   const auto spoils = [](int before, std::int64_t tick) {
