@@ -96,6 +96,7 @@ void expect_found(const Explanation& e, const PlantedLaw& law) {
   EXPECT_NEAR(e.final_stiffness_npm.value, 140e3, 1.4e3);
   EXPECT_GT(step.gain, 0.5);
   EXPECT_LT(step.held_out_nmse_after, step.held_out_nmse_before);
+  EXPECT_EQ(e.final.held_out_nmse, step.restated_after) << "in the weights of the final model";
 }
 
 TEST(PlantedColumns, EveryLawIsFoundAtItsPoint) {
