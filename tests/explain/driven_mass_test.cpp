@@ -301,7 +301,7 @@ TEST(ADrivenMass, IsCompleteWhereItSticksAndItsForceIsNoisy) {
         {"coulomb", 25.0}, {"moving_mass", 10.0}, {"stiffness", 3600.0}, {"viscous", 18.0}};
     for (const auto& [name, truth] : truths) {
       dampline::test::expect_size(found, name, truth, 2.5);
-      EXPECT_NEAR(value_of(found, name), truth, 0.01 * truth) << name << ", seed " << seed;
+      EXPECT_NEAR(value_of(found, name), truth, 0.02 * truth) << name << ", seed " << seed;
     }
   }
 }
