@@ -290,7 +290,9 @@ std::string advice_section(const RunResult& result) {
   for (const FaultFinding& f : result.faults.list) out += check_item(f.name, found_fault(f), truck);
   for (const LackingEffect& e : finding.effects)
     out += check_item(e.name, found_effect(e, truck), truck);
-  if (finding.verdict == "unexplained" || finding.verdict == "partly_explained")
+  // Beside faults that change the numbers, what is left is theirs.
+  const bool is_left = finding.verdict == "unexplained" || finding.verdict == "partly_explained";
+  if (is_left && result.trust != Trust::kDataFaulty)
     out +=
         check_item("unknown", finding.signature.empty() ? "" : "left: " + finding.signature, truck);
   if (result.faults.drift)
