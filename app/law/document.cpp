@@ -187,7 +187,11 @@ class Reader {
     return out;
   }
   [[nodiscard]] double number_or_0(const char* key) const {
-    return !json_.contains(key) || json_.at(key).is_null() ? 0.0 : number(key);
+    return get<Json>(key).is_null() ? 0.0 : number(key);
+  }
+  /// Of a member that files of earlier versions do not have.
+  [[nodiscard]] double number_if_there(const char* key) const {
+    return json_.contains(key) ? number_or_0(key) : 0.0;
   }
   [[nodiscard]] Reader in(const char* key) const {
     return {get<Json>(key), fmt::format("{}: {}", place_, key)};
@@ -364,7 +368,7 @@ Document read_document(std::string_view text, const std::string& origin) {
   out.residual_n = residual.number_or_0("force_n");
   out.residual_m = residual.number_or_0("deflection_m");
   out.residual_mps2 = residual.number_or_0("frame_accel_mps2");
-  out.lacking_n2_hz = residual.number_or_0("lacking_n2_hz");
+  out.lacking_n2_hz = residual.number_if_there("lacking_n2_hz");
   out.not_in_it = from.get<std::vector<std::string>>("not_in_it");
   return out;
 }

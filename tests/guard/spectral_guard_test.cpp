@@ -405,6 +405,10 @@ TEST(SpectralGuard, MeasuresAStepOfWhatTheFrameFollows) {
   EXPECT_NEAR(follow.step, 0.4, 0.25);
   EXPECT_GT(follow.step_significance, 1.0);
   EXPECT_GT(follow.trend, 0.0);
+  // A straight line through a step in the middle rises by one and a half of it.
+  EXPECT_NEAR(follow.trend, 1.5 * follow.step, 0.03);
+  EXPECT_NEAR(follow.usual, 0.05, 0.02);
+  EXPECT_GT(follow.trend_significance, 10.0);
 }
 
 }  // namespace

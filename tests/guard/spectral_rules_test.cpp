@@ -111,19 +111,5 @@ TEST(SpectralGuard, ThePlaceOfAStepOfTheGainIsKnownToHalfABlock) {
   }
 }
 
-// A straight line through a step in the middle rises by one and a half of it.
-TEST(SpectralGuard, TheTrendOfWhatTheFrameFollowsIsThatOfTheBlocks) {
-  Track track;
-  track.noise = 0.0;
-  track.change = [](std::int64_t tick, Track::Values& a) {
-    if (tick > 200 * 300) a[0] *= 1.5;
-  };
-  track.run(400.0);
-  const FrameFollow follow = track.guard().frame_follow();
-  EXPECT_NEAR(follow.trend, 1.5 * follow.step, 0.03);
-  EXPECT_NEAR(follow.usual, 0.05, 0.02);
-  EXPECT_GT(follow.trend_significance, 10.0);
-}
-
 }  // namespace
 }  // namespace dampline

@@ -274,10 +274,10 @@ double nmse_of(const Model& model, const std::vector<Series>& records) {
 }
 
 /// What the equations say of records that they know, those of a law's own motion, less that law;
-/// nothing where it moves otherwise than the records, or leaves hardly anything of what is left.
+/// nothing where it moves otherwise than the records, or where they leave less than `least_nmse`.
 std::optional<Eigen::VectorXd> error_of_equations(const std::vector<Series>& records,
                                                   const Scale& scale, const Model& model,
-                                                  const Joint& joint) {
+                                                  const Joint& joint, double least_nmse) {
   const std::optional<law::Law> law = law_of(model, scale);
   if (!law) return std::nullopt;
   std::vector<Series> known;
@@ -289,7 +289,7 @@ std::optional<Eigen::VectorXd> error_of_equations(const std::vector<Series>& rec
   Model again = model;
   const Joint there = fit_jointly(again, known, model.ridge, scale);
   if (!there.ok || there.size() != joint.size()) return std::nullopt;
-  if (nmse_of(again, known) < kOfTheirOwn * nmse_of(model, records)) return std::nullopt;
+  if (nmse_of(again, known) < least_nmse) return std::nullopt;
   return unknowns_of(again, there) - unknowns_of(model, joint);
 }
 
@@ -300,23 +300,27 @@ void correct_by_own_motion(const std::vector<Series>& records, const Scale& scal
                            Joint& joint) {
   const Eigen::VectorXd said = unknowns_of(model, joint);
   const Eigen::ArrayXd std = joint.covariance.diagonal().array().max(0.0).sqrt();
-  const auto first = error_of_equations(records, scale, model, joint);
+  const double least_nmse = kOfTheirOwn * nmse_of(model, records);
+  const auto first = error_of_equations(records, scale, model, joint, least_nmse);
   if (!first) return;
   Eigen::VectorXd error = *first;
-  double stays = 1.0;
-  for (int round = 0; round < kCorrections && stays == 1.0; ++round) {
+  bool found = false;
+  for (int round = 0; round < kCorrections && !found; ++round) {
     if ((error.array().abs() > kMostError * (said.array().abs() + std)).any()) break;
-    const auto next = error_of_equations(records, scale, with(model, joint, said - error), joint);
+    const auto next =
+        error_of_equations(records, scale, with(model, joint, said - error), joint, least_nmse);
     if (!next) break;
     const Eigen::ArrayXd allowed = kCorrected * std + kErrorStays * error.array().abs();
-    if (((*next - error).array().abs() < allowed).all()) stays = kErrorStays;
+    found = ((*next - error).array().abs() < allowed).all();
     error = 0.5 * (error + *next);  // it swings
   }
-  if (stays == 1.0)
-    error = *first;
-  else
+  if (found) {
     model = with(std::move(model), joint, said - error);
-  joint.covariance += stays * stays * error * error.transpose();
+    error *= kErrorStays;
+  } else {
+    error = *first;
+  }
+  joint.covariance += error * error.transpose();
 }
 
 }  // namespace

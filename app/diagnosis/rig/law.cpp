@@ -87,6 +87,17 @@ std::vector<std::string> left_out_of(const Model& model) {
   return out;
 }
 
+/// One-sided density of a force well below a corner, by the median of its means over blocks in
+/// squares: where the mass sticks, nobody knows what friction takes.
+double density_below(double corner_hz, const Eigen::VectorXd& force_n, double interval_s) {
+  const auto block = static_cast<Eigen::Index>(kBlockTurns / (corner_hz * interval_s)) + 1;
+  std::vector<double> squares;
+  for (Eigen::Index i = 0; i + block <= force_n.size(); i += block)
+    squares.push_back(std::pow(force_n.segment(i, block).mean(), 2));
+  if (squares.empty()) return 0.0;
+  return 2.0 * static_cast<double>(block) * interval_s * median_of(squares) / kMedianOfSquare;
+}
+
 }  // namespace
 
 bool is_sharp(const Regressor& c, const Scale& scale) {
@@ -145,17 +156,6 @@ law::Document document_of(const Model& model, const Joint& joint, const Scale& s
   out.subject = filtered ? law::Subject::kDrivenMass : law::Subject::kDamper;
   out.not_in_it = left_out_of(model);
   return out;
-}
-
-/// One-sided density of a force well below a corner, by the median of its means over blocks in
-/// squares: where the mass sticks, nobody knows what friction takes.
-double density_below(double corner_hz, const Eigen::VectorXd& force_n, double interval_s) {
-  const auto block = static_cast<Eigen::Index>(kBlockTurns / (corner_hz * interval_s)) + 1;
-  std::vector<double> squares;
-  for (Eigen::Index i = 0; i + block <= force_n.size(); i += block)
-    squares.push_back(std::pow(force_n.segment(i, block).mean(), 2));
-  if (squares.empty()) return 0.0;
-  return 2.0 * static_cast<double>(block) * interval_s * median_of(squares) / kMedianOfSquare;
 }
 
 void measure_left(const Model& model, const Series& series, law::Document& out) {

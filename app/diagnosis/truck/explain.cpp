@@ -92,9 +92,12 @@ void look_for_low_pass(const Reading& reading, Explained& out) {
   const bool is_complete = conclusion_of(out) == effect::Conclusion::kComplete;
   const bool could_be_too_low = reading.config.input.anti_alias.corner_hz < kUsualHz;
   if (is_complete && !could_be_too_low && left_over_floor(out) > kBelowFloor) return;
+  const std::optional<double> as_declared = out.identified.fit.held_out_nmse;
+  if (!as_declared) return;
   std::optional<double> by_effects;
   if (out.explanation.step_count > 0) by_effects = left_nmse(out);
-  const auto corner_hz = other_low_pass_hz(reading.config, reading.options.source, by_effects);
+  const auto corner_hz =
+      other_low_pass_hz(reading.config, reading.options.source, *as_declared, by_effects);
   if (corner_hz) name_and_withhold(FaultKind::kWrongLowPass, FaultChannel::kAll, *corner_hz, out);
 }
 

@@ -67,11 +67,10 @@ double least_of(const Course& c) {
 }  // namespace
 
 std::optional<double> other_low_pass_hz(const Config& config, const SourceOptions& source,
-                                        std::optional<double> left_nmse) {
+                                        double as_declared, std::optional<double> left_nmse) {
   const Trials trials{config, source};
   const double declared_hz = config.input.anti_alias.corner_hz;
   const double start_hz = declared_hz > 0.0 ? std::min(declared_hz, kUsualHz) : kUsualHz;
-  const double as_declared = trials.nmse(declared_hz);
   const Trial start{start_hz, start_hz == declared_hz ? as_declared : trials.nmse(start_hz)};
   Course course = walk(trials, start, kStep);
   if (course.best.corner_hz == start_hz && start_hz < kUsualHz) {

@@ -10,12 +10,13 @@ namespace dampline::app {
 inline constexpr double kUsualHz = 100.0;  ///< above, corners are hardly told apart
 
 /// Where the sensors' low pass seems to lie, Hz, where it is not as declared: behind it the base
-/// leaves clearly less of the record, held out, than behind the declared one, and than `left_nmse`,
-/// which the effects found there leave, if any were. Its phase and gain are put right before the
-/// estimate, so the wrong one leaves more; above 100 Hz that is hardly seen, and does not matter.
-/// Reads the record some times more. Throws RunError.
+/// leaves clearly less of the record, held out, than `as_declared`, behind the declared one, and
+/// `left_nmse`, which the effects found there leave, if any were. Its phase and gain are put right
+/// before the estimate, so the wrong one leaves more; above 100 Hz that is hardly seen, and does
+/// not matter. Reads the record some times more. Throws RunError.
 [[nodiscard]] std::optional<double> other_low_pass_hz(const Config& config,
                                                       const SourceOptions& source,
+                                                      double as_declared,
                                                       std::optional<double> left_nmse);
 
 }  // namespace dampline::app
