@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/error.hpp"
+#include "app/law/start.hpp"
 #include "app/rig/record.hpp"
 #include "app/rig/result.hpp"
 #include "dampline/rig/motion.hpp"
@@ -133,9 +134,7 @@ void leave_rest_out(Series& series) {
   const Eigen::VectorXd& x = series.deflection_m;
   const Eigen::VectorXd& v = series.velocity_mps;
   if (x.size() == 0) return;
-  const double rms_m = std::sqrt((x.array() - x.mean()).square().mean());
-  const double period =
-      2.0 * std::numbers::pi * rms_m / (std::sqrt(v.array().square().mean()) * series.interval_s);
+  const double period = law::period_of(x, v) / series.interval_s;
   const auto window = std::max(kFewestAtRest, static_cast<Eigen::Index>(kRestPeriods * period));
   if (!std::isfinite(period)) return;
   Eigen::VectorXd out = at_rest(x, window, kStill * (x.maxCoeff() - x.minCoeff()));
