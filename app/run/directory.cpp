@@ -115,11 +115,15 @@ void RunDirectory::make_target() {
 }
 
 /// Beside the target, for one exchange of names; inside it where no name leads from there to it.
+/// What a killed run left goes, an earlier one's of a series too: its name does not come again.
 void RunDirectory::make_staging() {
   const fs::path parent = target_.parent_path();
-  const std::string stem = fmt::format(".{}{}", target_.filename().string(), kPartial);
+  const fs::path name = target_.filename();
+  const std::string number = name.extension();  // of a series
+  const bool one_of_many = number.find_first_not_of("0123456789", 1) == std::string::npos;
+  const std::string stem = fmt::format(".{}{}", name.string(), kPartial);
   remove_stale(target_, std::string{kPartial});
-  remove_stale(parent, stem);
+  remove_stale(parent, "." + (one_of_many ? name.stem() : name).string());
   std::error_code error;
   beside_ = same_mount(parent, target_) && ::access(parent.c_str(), W_OK | X_OK) == 0 &&
             !fs::equivalent(target_, fs::current_path(error), error);

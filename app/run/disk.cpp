@@ -146,7 +146,8 @@ void remove_stale(const fs::path& parent, const std::string& stem) noexcept {
   std::error_code error;
   for (fs::directory_iterator at{parent, error}; !error && at != fs::directory_iterator{};
        at.increment(error)) {
-    if (!at->path().filename().native().starts_with(stem)) continue;
+    const std::string name = at->path().filename();
+    if (!name.starts_with(stem) || name.find(kPartial) == std::string::npos) continue;
     const Descriptor held{
         ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)};
     if (held.get() < 0 || ::flock(held.get(), LOCK_EX | LOCK_NB) != 0) continue;

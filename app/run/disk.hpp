@@ -60,7 +60,7 @@ inline constexpr std::string_view kPartial = ".partial-";
     const std::filesystem::path& folder,
     const std::function<bool(const std::filesystem::path&)>& pass_over = {});
 
-/// Removes files and directories of that stem which nobody writes any more.
+/// Removes what was being written under names that begin so, and nobody writes any more.
 void remove_stale(const std::filesystem::path& parent, const std::string& stem) noexcept;
 
 /// The same content under another name, without a copy: hard links in directories of their own.

@@ -209,42 +209,5 @@ TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
               static_cast<unsigned long long>(locked_kib_));
 }
 
-void set_clock(std::int64_t time_s) {
-  const timespec time{.tv_sec = static_cast<time_t>(time_s), .tv_nsec = 0};
-  ASSERT_EQ(::clock_settime(CLOCK_REALTIME, &time), 0);
-}
-
-// Each boot begins in 1970, and the power goes before the time is there; but for the last.
-TEST_F(TimeTravelWeek, ALoopOfBootsWithoutAClockKeepsItsRecording) {
-  constexpr int kBoots = 5;
-  constexpr std::uint64_t kUnsynced = 2 * 3 * Sensors::kRateHz;  // frames of two seconds
-  const std::string box = disk_.path() / "box";
-  timespec before{};
-  ::clock_gettime(CLOCK_REALTIME, &before);
-  for (int boot = 1; boot <= kBoots; ++boot) {
-    set_clock(86'400);  // not before the machine began
-    live_.emplace(folder_, bus_.name(), disk_.path() / ("boot" + std::to_string(boot)),
-                  Words{"--config", folder_ / "car.toml", "--blackbox", box});
-    drive(10.0);
-    if (boot < kBoots) live_.reset();  // by SIGKILL
-  }
-  set_clock(before.tv_sec);
-  drive(10.0);
-  std::this_thread::sleep_for(std::chrono::milliseconds{100});
-  const nlohmann::json counts = live_->stop().at("counts");
-  EXPECT_EQ(counts.at("frames_sent"), 2 * 3 * 10 * Sensors::kRateHz);
-  EXPECT_EQ(counts.at("frames_processed"), counts.at("frames_sent"));
-  const Ended read =
-      Child{{DAMPLINE_BINARY_DIR "/dampline", "export", box, "--out", folder_ / "all.log"},
-            folder_.path()}
-          .wait();
-  EXPECT_EQ(read.status, 0) << read.error;
-  EXPECT_THAT(read.error, testing::HasSubstr(" 0 damaged stretches"));
-  const std::string log = read_file(folder_ / "all.log");
-  const auto frames = static_cast<std::uint64_t>(std::count(log.begin(), log.end(), '\n'));
-  EXPECT_LE(frames, sensors_.made());
-  EXPECT_GE(frames + (kBoots - 1) * kUnsynced, sensors_.made());
-}
-
 }  // namespace
 }  // namespace dampline::bus

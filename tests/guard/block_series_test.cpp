@@ -129,16 +129,25 @@ TEST(BlockSeries, ChangeSinceComparesTwoAndTwo) {
   EXPECT_EQ(series.change_since(11), 0.0);
 }
 
-TEST(BlockSeries, ATrendNeedsSixBlocksAndKnowsItsBend) {
+TEST(BlockSeries, ATrendNeedsSixBlocks) {
   EXPECT_EQ(series_of({0, 1, 2, 3, 4}).trend().per_block, 0.0);
   const BlockSeries::Trend straight = series_of({0, 1, 2, 3, 4, 5}).trend();
   EXPECT_NEAR(straight.per_block, 1.0, 1e-12);
   EXPECT_NEAR(straight.total, 5.0, 1e-12);
-  EXPECT_EQ(straight.bend, 0.0);
   EXPECT_NEAR(straight.significance, std::sqrt(17.5) / scatter_of(1.0), 1e-9);
-  EXPECT_NEAR(series_of({0, 1, 2, 3, 7, 11}).trend().bend, 3.0 / 2.5, 1e-12);
-  EXPECT_NEAR(series_of({0, -1, -2, -3, -7, -11}).trend().bend, 3.0 / 2.5, 1e-12);
-  EXPECT_GT(series_of({0, 1, 2, 3, 2, 1, 0}).trend().bend, 1e300) << "what comes back";
+}
+
+TEST(BlockSeries, ALineIsNoStep) {
+  for (const std::size_t block : {3U, 4U}) {
+    EXPECT_TRUE(series_of({0, 1, 2, 3, 4, 5, 6}).is_straight(block));
+    EXPECT_TRUE(series_of({0.1, -1, -2.1, -3, -3.9, -5, -6.1}).is_straight(block));
+  }
+  for (const double within : {0.0, 0.3, 0.5, 1.0}) {  // of the change, in the block that holds it
+    EXPECT_FALSE(series_of({0, 0, 0, within, 1, 1, 1}).is_straight(3));
+    EXPECT_FALSE(series_of({0, 0.02, 0, -0.01, within, 1, 1.02, 0.99}).is_straight(4));
+    EXPECT_FALSE(series_of({0, 0, 0, 0, 0, within, -1, -1, -1}).is_straight(6));
+  }
+  EXPECT_TRUE(series_of({0, 0, 1, 1}).is_straight(1)) << "one block is no level";
 }
 
 }  // namespace

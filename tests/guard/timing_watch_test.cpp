@@ -108,6 +108,20 @@ TEST(TimingWatch, NamesTheWheelsetThatIsOutOfStep) {
   }
 }
 
+// In the middle of the series half of the change looks like a line.
+TEST(TimingWatch, AStepWithinABlockIsAStepWhereverItIs) {
+  constexpr double kLateS = 0.0016;
+  for (int before = 3; before < 14; ++before) {
+    for (const double share : {0.25, 0.5, 0.75}) {
+      Blocks blocks;
+      blocks.show(before, {});
+      blocks.show(1, wheelset2_late(share * kLateS));
+      blocks.show(5, wheelset2_late(kLateS));
+      expect_only(blocks, {FaultKind::kTimingStep, FaultChannel::kWheelset2, kLateS}, 2e-6);
+    }
+  }
+}
+
 TEST(TimingWatch, AStepOfWholeSamplesIsSamplesLostOrRepeated) {
   for (const int samples : {1, 2}) {
     Blocks late;

@@ -62,15 +62,36 @@ BlockSeries::Trend BlockSeries::trend() const noexcept {
   const double slope = sxy / sxx;
   return {.significance = std::abs(slope) * std::sqrt(sxx) / std::max(scatter(), kLeastScatter),
           .per_block = slope,
-          .total = slope * 2.0 * centre,
-          .bend = bend()};
+          .total = slope * 2.0 * centre};
 }
 
-double BlockSeries::bend() const noexcept {
-  const std::size_t half = size_ / 2;
-  const double older = (values_[half] - values_[0]) / static_cast<double>(half);
-  const double newer = (values_[size_ - 1] - values_[half]) / static_cast<double>(size_ - 1 - half);
-  return std::abs(newer - older) / std::max(0.5 * std::abs(newer + older), kLeastScatter);
+bool BlockSeries::is_straight(std::size_t block) const noexcept {
+  struct Squares {
+    double n{0.0}, x{0.0}, y{0.0}, xx{0.0}, xy{0.0}, yy{0.0};
+    [[nodiscard]] double about_mean() const noexcept { return yy - y * y / n; }
+    [[nodiscard]] double about_line() const noexcept {
+      const double along = xy - x * y / n;
+      return about_mean() - along * along / (xx - x * x / n);
+    }
+  };
+  if (block < 2 || block + 2 > size_) return true;
+  const double middle = median();
+  std::array<Squares, 2> sides;
+  Squares all;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (i == block || i + 1 == block) continue;
+    const auto x = static_cast<double>(i);
+    const double y = values_[i] - middle;
+    for (Squares* const sum : {&all, &sides[i < block ? 0 : 1]}) {
+      sum->n += 1.0;
+      sum->x += x;
+      sum->y += y;
+      sum->xx += x * x;
+      sum->xy += x * y;
+      sum->yy += y * y;
+    }
+  }
+  return all.about_line() < sides[0].about_mean() + sides[1].about_mean();
 }
 
 }  // namespace dampline

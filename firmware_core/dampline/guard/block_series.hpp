@@ -24,7 +24,6 @@ class BlockSeries {
     double significance{0.0};
     double per_block{0.0};
     double total{0.0};  ///< over the series
-    double bend{0.0};   ///< slope of the newer half minus that of the older, over the mean slope
   };
 
   void add(double value, std::int64_t tick) noexcept {
@@ -92,9 +91,11 @@ class BlockSeries {
   /// The most significant step with kSide blocks on either side.
   [[nodiscard]] Step step() const noexcept;
   [[nodiscard]] Trend trend() const noexcept;
+  /// Whether a line leaves less, in squares, than the means on either side of a step at `block`. The
+  /// nearest block on either side may hold the change, and counts for neither.
+  [[nodiscard]] bool is_straight(std::size_t block) const noexcept;
 
  private:
-  [[nodiscard]] double bend() const noexcept;
   [[nodiscard]] static double middle(std::array<double, kCapacity>& values,
                                      std::size_t count) noexcept {
     auto* const nth = values.data() + count / 2;

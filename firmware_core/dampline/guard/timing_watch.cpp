@@ -18,7 +18,6 @@ constexpr double kSudden = 0.7;         // of the change, within
 constexpr std::size_t kSuddenHops = 4;  // segments of 0.85 s
 constexpr double kNoGapS = 8.0;         // across kSuddenHops + 2 segments
 constexpr double kSameWay = 0.5;        // of the frame's lag behind all alike
-constexpr double kStraight = 0.3;       // a clock does not change its rate, a driver does
 constexpr double kWholeDelay = 0.03;    // samples: a step this near a whole number of them
 constexpr double kWholeLag = 0.05;
 constexpr double kReachS = 20.0;          // from where a step is sought
@@ -178,8 +177,7 @@ bool TimingWatch::judge_wheelsets(FaultLog& log, GuardInputs& inputs) noexcept {
                                : cause == Cause::kWheelset2 ? FaultChannel::kWheelset2
                                                             : FaultChannel::kWheelsets;
   const double sign = cause == Cause::kWheelset1 ? -1.0 : 1.0;  // wheelset 1 late: less delay
-  const bool straight = delay_.trend().bend < kStraight;
-  if (at_once && (cause == Cause::kUnknown || !straight)) {
+  if (at_once && (cause == Cause::kUnknown || !delay_.is_straight(step.block))) {
     report_step(log, channel, tick, sign * change_s, kWholeDelay);
     forget_before(tick);
   } else {
