@@ -2,6 +2,8 @@
 #include "app/live/process.hpp"
 
 #include <fmt/format.h>
+#include <link.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -25,9 +27,9 @@ namespace dampline::app {
 namespace {
 
 /// A locked stack is there whole: with the usual 8 MiB, those of three threads would be a third of
-/// what the program holds.
+/// what the program holds. They use 160 KB at most.
 void keep_stacks_small() noexcept {
-  constexpr std::size_t kStackBytes = std::size_t{2} << 20U;
+  constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
   pthread_attr_t attributes;
   if (::pthread_attr_init(&attributes) != 0) return;
   if (::pthread_attr_setstacksize(&attributes, kStackBytes) == 0)
@@ -35,12 +37,42 @@ void keep_stacks_small() noexcept {
   ::pthread_attr_destroy(&attributes);
 }
 
+/// What the acquisition calls; the other libraries serve readers, files and fleets.
+bool is_on_the_way(std::string_view library) noexcept {
+  constexpr std::array<std::string_view, 7> kNames{"/libc.so",     "/libm.so",   "/libstdc++.so",
+                                                   "/libgcc_s.so", "/libfmt.so", "/libgpiod.so",
+                                                   "/ld-linux"};
+  return library.find('/') == std::string_view::npos ||  // the program, the kernel's part
+         std::any_of(kNames.begin(), kNames.end(), [library](std::string_view name) {
+           return library.find(name) != std::string_view::npos;
+         });
+}
+
+/// Gives up what a file can bring back: code and constants of libraries that no sample passes.
+int let_go(dl_phdr_info* object, std::size_t /*size*/, void* /*nothing*/) noexcept {
+  if (is_on_the_way(object->dlpi_name)) return 0;
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  for (int i = 0; i < object->dlpi_phnum; ++i) {
+    const ElfW(Phdr)& part = object->dlpi_phdr[i];  // NOLINT(*-pointer-arithmetic): the loader's
+    if (part.p_type != PT_LOAD || (part.p_flags & PF_W) != 0) continue;
+    const std::uintptr_t begin = (object->dlpi_addr + part.p_vaddr) / page * page;
+    const std::size_t bytes = object->dlpi_addr + part.p_vaddr + part.p_memsz - begin;
+    void* const address = reinterpret_cast<void*>(begin);  // NOLINT(*-reinterpret-cast)
+    if (::munlock(address, bytes) == 0) ::madvise(address, bytes, MADV_DONTNEED);
+  }
+  return 0;
+}
+
 }  // namespace
 
 void lock_memory(Realtime& realtime) {
   keep_stacks_small();
+  constexpr int kReturnedAbove = 1 << 20;  // else what a diagnosis held stays with the program
+  ::mallopt(M_MMAP_THRESHOLD, kReturnedAbove);
   realtime.memory_locked = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-  if (!realtime.memory_locked)
+  if (realtime.memory_locked)
+    ::dl_iterate_phdr(let_go, nullptr);
+  else
     realtime.problems.push_back(
         fmt::format("Memory could not be locked ({}): the acquisition may wait for a page. Allow "
                     "it with LimitMEMLOCK=infinity or `ulimit -l unlimited`.",

@@ -17,6 +17,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "sim_hw/simulation.hpp"
 #include "tests/bus/bus.hpp"
@@ -36,11 +37,12 @@ double number_of(const char* variable, double otherwise) {
 
 class TimeTravelWeek : public testing::Test {
  public:
+  static constexpr int kAtOnce = 10;  // instants that are sent together
   TimeTravelWeek() {
     std::ofstream{folder_ / "car.toml"}
         << "[blackbox]\nrotate_mib = 4\nkeep_mib = 24\nreserve_free_mib = 0\n";
     sensors_.motion = [this] { return simulation_.next().counts; };
-    sensors_.batch = 4;
+    sensors_.batch = kAtOnce;
   }
 
   [[nodiscard]] std::string run_name() const { return "car.run." + std::to_string(lives_); }
@@ -63,7 +65,9 @@ class TimeTravelWeek : public testing::Test {
     return std::uniform_real_distribution<double>{low, high}(random_);
   }
 
+  // Nor is it known beyond such a batch of each channel where they go on after the link was away.
   void link_goes() {
+    unsure_ += kChannels * kAtOnce;
     const Seconds away{between(0.1, 4.0)};
     std::thread operating{[this, away] {
       bus_.down();
@@ -81,7 +85,7 @@ class TimeTravelWeek : public testing::Test {
     drive(2.0);
   }
   // What the node did not make while it was off may be taken for lost: no counter tells, and where
-  // it goes on is known by the time of its frames, which come four at once.
+  // it goes on is known by the time of its frames, which come so many at once.
   void node_restarts() {
     const auto instants = static_cast<std::int64_t>(between(3.0, 300.0));
     sensors_.restart_node(random_() % kChannels, instants);
@@ -112,7 +116,7 @@ class TimeTravelWeek : public testing::Test {
     live_->signal(SIGCONT);
   }
   void look_at_memory() {
-    most_kib_ = std::max(most_kib_, live_->memory_kib("VmRSS"));
+    memory_kib_.push_back(live_->memory_kib("VmRSS"));
     locked_kib_ = std::max(locked_kib_, live_->memory_kib("VmLck"));
   }
 
@@ -163,7 +167,7 @@ class TimeTravelWeek : public testing::Test {
   std::uint64_t doubled_{0};
   std::uint64_t off_{0};
   std::uint64_t unsure_{0};
-  std::uint64_t most_kib_{0};
+  std::vector<std::uint64_t> memory_kib_;
   std::uint64_t locked_kib_{0};
   std::string happened_;  ///< in this life
   double driven_s_{0.0};
@@ -198,14 +202,18 @@ TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
     }
     random_() % 4 == 0 ? kill_program() : end_life();
   }
-  EXPECT_LT(most_kib_, 96U * 1024U);  // 20 MiB of it the surrogates of the live floor
+  std::sort(memory_kib_.begin(), memory_kib_.end());
+  const std::uint64_t usual_kib = memory_kib_[memory_kib_.size() / 2];
+  EXPECT_LT(usual_kib, 64U * 1024U);
+  EXPECT_LT(memory_kib_.back(), 76U * 1024U);  // while it looks for the other truck
   std::printf("week: %.2f h of driving, %d lives, %d of them killed\n", driven_s_ / 3600.0, lives_,
               kills_);
   for (const Rule& rule : rules) std::printf("week: %s %d times\n", rule.name, rule.times);
   for (const auto& [name, count] : sum_)
     std::printf("week: %s %llu\n", name.c_str(), static_cast<unsigned long long>(count));
-  std::printf("week: memory %llu KiB at most, %llu of them locked\n",
-              static_cast<unsigned long long>(most_kib_),
+  std::printf("week: memory %llu KiB, %llu at most; %llu locked\n",
+              static_cast<unsigned long long>(usual_kib),
+              static_cast<unsigned long long>(memory_kib_.back()),
               static_cast<unsigned long long>(locked_kib_));
 }
 
