@@ -38,6 +38,8 @@ struct PlainSensors {
   double noise_mps2{0.02};  ///< white, rms
   int bits{12};             ///< of 20 m/s^2 for the frame, 120 m/s^2 for wheelsets
   double jitter_s{0.0};     ///< rms, of each channel by itself
+
+  std::array<double, 3> late_s{};  ///< each channel's samples are taken so much later
   // Where they sit, and what else they see.
   double off_centre_m{0.0};       ///< of the frame's, which sees its pitch there
   double roll{0.0};               ///< of the wheelsets', over their vertical motion
@@ -200,7 +202,7 @@ inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sen
     const double time_s = static_cast<double>(i) / sensors.rate_hz;
     text += fmt::format("{:.7f}", time_s);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double at = kFineHz * (time_s + sensors.jitter_s * normal(random));
+      const double at = kFineHz * (time_s + sensors.late_s[c] + sensors.jitter_s * normal(random));
       const auto place =
           static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
       const double step = (c == 0 ? 20.0 : 120.0) / std::exp2(sensors.bits);
