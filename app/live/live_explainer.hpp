@@ -74,7 +74,7 @@ class LiveExplainer {
 
   // The thread's.
   std::unique_ptr<effect::Explainer> explainer_;
-  decltype(Explained::needless) needless_{};
+  Needless needless_;
   double needless_rows_{0.0};  // of the sums, when they were last asked anew
   mutable std::mutex mutex_;
   std::optional<Explained> newest_;

@@ -16,9 +16,7 @@ bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& flo
     if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
     floor.hold_against(sums.store, known.guarded, explainer, out);
     hold_back(out);
-    const effect::Effect needless = needless_effect(out.explanation);
-    if (needless == effect::Effect::kUnknown) break;
-    out.needless[static_cast<std::size_t>(needless)] = true;
+    if (!take_needless(out.explanation, out.needless)) break;
   }
   effect::name_nothing_impossible(out.explanation);
   return true;

@@ -49,21 +49,37 @@ TEST(TruckVerdict, LeavesOutWhatIsLessThanSensorsMake) {
   e.floor_nmse = 0.3;
   e.step[0].held_out_nmse_before = 0.2;
   e.step[0].chosen.effect = effect::Effect::kUnmodelledMode;
-  EXPECT_EQ(needless_effect(e), effect::Effect::kUnmodelledMode);
+  EXPECT_EQ(needless_step(e), 0U);
   e.step[0].gain = 0.2;  // much, and the first: the floor may be too high
-  EXPECT_EQ(needless_effect(e), effect::Effect::kUnknown);
+  EXPECT_EQ(needless_step(e), 1U);
   e.step[0].gain = 0.02;
   e.floor_nmse = 0.2;
-  EXPECT_EQ(needless_effect(e), effect::Effect::kUnknown);
+  EXPECT_EQ(needless_step(e), 1U);
 }
 
 TEST(TruckVerdict, LeavesOutALatenessThatMayBeNone) {
   effect::Explanation e = explained_by_one_effect(0.3);
   e.step[0].chosen.effect = effect::Effect::kTimeSkew;
   e.step[0].parameter[0].estimate = {12e-6, 11e-6};
-  EXPECT_EQ(needless_effect(e), effect::Effect::kTimeSkew);
+  EXPECT_EQ(needless_step(e), 0U);
   e.step[0].parameter[0].estimate = {120e-6, 11e-6};
-  EXPECT_EQ(needless_effect(e), effect::Effect::kUnknown);
+  EXPECT_EQ(needless_step(e), 1U);
+}
+
+TEST(TruckVerdict, OfTwoLateChannelsTheSecondMayBeNone) {
+  effect::Explanation e = explained_by_one_effect(0.3);
+  e.step_count = 2;
+  for (effect::Step& step : {std::ref(e.step[0]), std::ref(e.step[1])}) {
+    step.chosen.effect = effect::Effect::kTimeSkew;
+    step.gain = 0.3;
+    step.parameter[0].estimate = {120e-6, 11e-6};
+  }
+  Needless known;
+  EXPECT_FALSE(take_needless(e, known));
+  e.step[1].parameter[0].estimate = {12e-6, 11e-6};
+  EXPECT_TRUE(take_needless(e, known));
+  EXPECT_TRUE(known.second_late);
+  EXPECT_FALSE(known.effect[static_cast<std::size_t>(effect::Effect::kTimeSkew)]);
 }
 
 TEST(TruckVerdict, CountsAParameterThatChangesAsAnEffect) {

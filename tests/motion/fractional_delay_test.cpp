@@ -27,7 +27,7 @@ Sample sample_at(std::int64_t tick, double late_s) {
 
 TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
   for (const double late_s : {0.0021, -0.0007, 0.0117}) {
-    FractionalDelay alignment{{1, late_s}, kTruckRateHz};
+    FractionalDelay alignment{{0.0, late_s, 0.0}, kTruckRateHz};
     int seen = 0;
     for (std::int64_t tick = 5; tick < 400; ++tick) {
       const auto out = alignment.next(sample_at(tick, late_s));
@@ -39,6 +39,18 @@ TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
       EXPECT_EQ(out->accel_mps2[0], truth);
     }
     EXPECT_EQ(seen, 395 - 2 * FractionalDelay::kHalf);
+  }
+}
+
+TEST(FractionalDelay, SetsTwoLateChannelsRight) {
+  FractionalDelay alignment{{0.0013, 0.0, -0.0022}, kTruckRateHz};
+  for (std::int64_t tick = 0; tick < 200; ++tick) {
+    const double t = static_cast<double>(tick) / kTruckRateHz;
+    const auto out = alignment.next(
+        {.tick = tick, .accel_mps2 = {tones(t - 0.0013), tones(t), tones(t + 0.0022)}});
+    if (!out) continue;
+    const double truth = tones(static_cast<double>(out->tick) / kTruckRateHz);
+    for (const double seen : out->accel_mps2) EXPECT_NEAR(seen, truth, 0.01);
   }
 }
 
@@ -59,7 +71,7 @@ TEST(FractionalDelay, IsTheSincWithBlackmansWeights) {
   };
   double sum = 0.0;
   for (int i = -kHalf; i <= kHalf; ++i) sum += tap(i);
-  FractionalDelay alignment{{2, kLate / kTruckRateHz}, kTruckRateHz};
+  FractionalDelay alignment{{0.0, 0.0, kLate / kTruckRateHz}, kTruckRateHz};
   constexpr std::int64_t kPulse = 100;
   for (std::int64_t tick = 0; tick < 200; ++tick) {
     const auto out = alignment.next({.tick = tick, .accel_mps2 = {0, 0, tick == kPulse ? 1.0 : 0}});
@@ -70,7 +82,7 @@ TEST(FractionalDelay, IsTheSincWithBlackmansWeights) {
 }
 
 TEST(FractionalDelay, OfNothingIsAPureDelay) {
-  FractionalDelay alignment{{1, 0.0}, kTruckRateHz};
+  FractionalDelay alignment{{}, kTruckRateHz};
   for (std::int64_t tick = 1; tick < 100; ++tick) {
     const auto out = alignment.next(sample_at(tick, 0.0));
     if (!out) continue;
@@ -79,7 +91,7 @@ TEST(FractionalDelay, OfNothingIsAPureDelay) {
 }
 
 TEST(FractionalDelay, StartsAnewAfterAGapAndPassesOnWhatIsNoNumber) {
-  FractionalDelay alignment{{0, 0.001}, kTruckRateHz};
+  FractionalDelay alignment{{0.001, 0.0, 0.0}, kTruckRateHz};
   for (std::int64_t tick = 0; tick < 100; ++tick)
     static_cast<void>(alignment.next(sample_at(tick, 0.0)));
   EXPECT_FALSE(alignment.next(sample_at(101, 0.0)));

@@ -66,9 +66,7 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
     look_closer(config, options, pass, noise, *explainer, out);
     look_again(config, options, pass, noise, *explainer, out, reading.search);
     hold_back(out);
-    const effect::Effect needless = needless_effect(out.explanation);
-    if (needless == effect::Effect::kUnknown) return;
-    out.needless[static_cast<std::size_t>(needless)] = true;
+    if (!take_needless(out.explanation, out.needless)) return;
   }
 }
 
@@ -145,6 +143,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   look_for_other(reading, pass, out);
   look_for_low_pass(reading, out);
   effect::name_nothing_impossible(out.explanation);
+  excuse_rate(config, out);
   take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)

@@ -18,15 +18,20 @@
 
 namespace dampline::app {
 
+/// What looked like an effect at first and was none, and is no candidate any more.
+struct Needless {
+  std::array<bool, effect::kEffects> effect{};
+  bool second_late{false};  ///< of two late channels
+};
+
 /// A truck record explained.
 struct Explained : effect::Judgement {
   effect::Circumstances circumstances;  ///< of the record
-  LateChannel lateness;                 ///< of a channel that was set right for the explanation
+  Lateness lateness{};                  ///< of channels that were set right for the explanation
   /// The truck under the other end of the body, where the explanation takes it in; or null.
   std::shared_ptr<const OtherTruck> other;
   double without_other_nmse{0.0};  ///< held-out error of the base without it
-  /// By Effect: what looked like one at first and was none, and is no candidate any more.
-  std::array<bool, effect::kEffects> needless{};
+  Needless needless;
   std::vector<Validated> validation;
   Signature signature;  ///< of what the final model leaves; rms 0: the record was read only once
   Convergence convergence;  ///< of the final model; where the record was read again

@@ -90,17 +90,36 @@ constexpr int kRounds = 3;
 constexpr double kEnoughS = 20e-6;  // of a channel's lateness
 constexpr double kSettled = 0.998;  // of the error of the round before
 
-/// The late channel among an explanation's steps, or null.
-const effect::Step* late_step(const effect::Explanation& e) {
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    if (e.step[i].chosen.effect == effect::Effect::kTimeSkew) return &e.step[i];
-  return nullptr;
+bool is_late(const effect::Step& step) noexcept {
+  return step.chosen.effect == effect::Effect::kTimeSkew;
 }
 
-void set_late(effect::Explanation& e, const Estimate& late_s) {
+/// The late channels among an explanation's steps, as columns.
+effect::Model late_channels(const effect::Explanation& e) noexcept {
+  effect::Model out;
   for (std::size_t i = 0; i < e.step_count; ++i)
-    if (e.step[i].chosen.effect == effect::Effect::kTimeSkew)
-      e.step[i].parameter[0].estimate = late_s;
+    if (is_late(e.step[i])) out = out.with(e.step[i].chosen);
+  return out;
+}
+
+using LateEstimates = std::array<Estimate, kChannels>;
+
+LateEstimates late_of(const effect::Explanation& e) noexcept {
+  LateEstimates out{};
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    if (is_late(e.step[i])) out[e.step[i].chosen.form] = e.step[i].parameter[0].estimate;
+  return out;
+}
+
+Lateness values_of(const LateEstimates& late_s) noexcept {
+  Lateness out{};
+  for (std::size_t c = 0; c < kChannels; ++c) out[c] = late_s[c].value;
+  return out;
+}
+
+void set_late(effect::Explanation& e, const LateEstimates& late_s) noexcept {
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    if (is_late(e.step[i])) e.step[i].parameter[0].estimate = late_s[e.step[i].chosen.form];
 }
 
 /// One reading more.
@@ -113,13 +132,13 @@ class CloserLook {
     noise_ = noise_of_record(guarded_noise(first.run->core()), noise, core_.screen.step_mps2);
   }
 
-  /// Explains with these grids and a channel set right; `left`: how late it still is.
+  /// Explains with these grids and channels set right; `left`: how late they still are.
   effect::Explanation explain(const Explained& known, const effect::Grids& grids,
-                              const LateChannel& lateness, Estimate& left) {
+                              const Lateness& lateness, LateEstimates& left) {
     TruckPassOptions reading{grids, lateness, options_.show_progress, {}, known.other.get()};
     const effect::SurrogateConfig law =
         with_memory(surrogate_config(core_, known.explanation, noise_), known.explanation);
-    const bool late = late_step(known.explanation) != nullptr;
+    const bool late = late_channels(known.explanation).count > 0;
     std::unique_ptr<SurrogatePass> surrogate;
     if (late && is_physical(law)) surrogate = std::make_unique<SurrogatePass>(core_, law, grids);
     reading.watch = [&](const Sample& sample, const UpdateResult&, const effect::Diagnosis&) {
@@ -135,15 +154,17 @@ class CloserLook {
 
  private:
   /// Errors of the velocity's phase look like lateness, too, and do so on the surrogate.
-  Estimate lateness_left(const effect::Diagnosis& diagnosis, SurrogatePass* surrogate,
-                         const effect::Explanation& e) {
-    const effect::Candidate& skew = late_step(e)->chosen;
-    Estimate out = explainer_.lateness(diagnosis, e.model, skew);
+  LateEstimates lateness_left(const effect::Diagnosis& diagnosis, SurrogatePass* surrogate,
+                              const effect::Explanation& e) {
+    const effect::Model late = late_channels(e);
+    LateEstimates out = explainer_.lateness(diagnosis, e.model, late);
     if (surrogate == nullptr) return out;
     surrogate->finish();
-    const Estimate bias =
-        explainer_.lateness(surrogate->diagnosis(), effect::remembering_part(e), skew);
-    return {out.value - bias.value, std::hypot(out.std, bias.std)};
+    const LateEstimates bias =
+        explainer_.lateness(surrogate->diagnosis(), effect::remembering_part(e), late);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      out[c] = {out[c].value - bias[c].value, std::hypot(out[c].std, bias[c].std)};
+    return out;
   }
 
   const Config& config_;
@@ -157,7 +178,7 @@ class CloserLook {
 /// set right, and tells a fifth too little of it. It stays in the model; how late the channel is
 /// comes from the closer look, and friction and spring are as uncertain as the two are apart.
 void correct_lateness(const effect::Explanation& closer, effect::Explanation& e) {
-  set_late(e, late_step(closer)->parameter[0].estimate);
+  set_late(e, late_of(closer));
   const auto widen = [](const Estimate& other, Estimate& one) {
     one.std = std::hypot(one.std, one.value - other.value);
   };
@@ -172,30 +193,31 @@ void look_closer(const Config& config, const ExplainOptions& options, const Truc
   if (!can_read_again(options.source.path)) return;
   CloserLook look{config, options, first, noise, explainer};
   Explained now = out;
-  LateChannel lateness;
-  const effect::Step* const late = late_step(out.explanation);
-  if (late != nullptr) lateness = {late->chosen.form, late->parameter[0].estimate.value};
-  bool set_right = late == nullptr;
+  const bool late = late_channels(out.explanation).count > 0;
+  Lateness lateness = values_of(late_of(out.explanation));
+  bool set_right = !late;
   for (int round = 0; round < kRounds; ++round) {
     effect::Grids grids;
     const bool has_grids = effect::draw_together(now.explanation, round, grids);
-    if (late == nullptr && !has_grids) return;
+    if (!late && !has_grids) return;
     const double before = now.explanation.final.held_out_nmse;
-    Estimate left;
+    LateEstimates left{};
     now.explanation = look.explain(now, grids, lateness, left);
     if (!now.explanation.final.ok) return;
     now.lateness = lateness;
-    lateness.late_s += left.value;
-    if (late != nullptr)
-      set_late(now.explanation, {lateness.late_s, std::hypot(left.std, kEnoughS)});
+    set_right = true;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      lateness[c] += left[c].value;
+      set_right = set_right && std::abs(left[c].value) < kEnoughS;
+      left[c] = {lateness[c], std::hypot(left[c].std, kEnoughS)};
+    }
+    set_late(now.explanation, left);
     const bool settled = now.explanation.final.held_out_nmse > kSettled * before;
-    set_right = late == nullptr || std::abs(left.value) < kEnoughS;
     if (set_right && (!has_grids || (round > 0 && settled))) break;
   }
-  const double limit =
-      (late != nullptr ? out.explanation.base : out.explanation.final).held_out_nmse;
+  const double limit = (late ? out.explanation.base : out.explanation.final).held_out_nmse;
   if (!(kSettled * now.explanation.final.held_out_nmse < limit)) {
-    if (late != nullptr && set_right) correct_lateness(now.explanation, out.explanation);
+    if (late && set_right) correct_lateness(now.explanation, out.explanation);
     return;
   }
   out.explanation = now.explanation;

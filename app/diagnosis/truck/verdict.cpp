@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/diagnosis/truck/verdict.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -23,7 +22,8 @@ constexpr double kForeign = 0.03;        // of the frame's power at 1.2 Hz
 constexpr double kOffCentre = 0.12;      // of half the difference: 0.05 m off, wheelbase 1.8 m
 constexpr double kOffCentreShare = 0.3;  // of what the mean leaves; sound records reach 0.27
 constexpr double kLittleOff = 0.03;
-constexpr double kNoGain = 0.5;  // of a gain that is named: the powers show less of it
+constexpr double kRateExcused = 0.003;  // of the delay, as the guard asks for
+constexpr double kNoGain = 0.5;         // of a gain that is named: the powers show less of it
 
 /// What is already less than sensors and rounding leave has no room for one effect more; for the
 /// first, which may be large beside a floor that is too high, only where it gains little.
@@ -97,6 +97,31 @@ void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explai
   effect::withhold_effects(out.explanation);
 }
 
+void excuse_rate(const Config& config, Explained& out) noexcept {
+  if (!config.car.wheelbase_m || !config.input.speed_mps) return;
+  double between_s = 0.0;  // wheelset 2 after wheelset 1
+  for (std::size_t i = 0; i < out.explanation.step_count; ++i) {
+    const effect::Step& step = out.explanation.step[i];
+    if (step.chosen.effect != effect::Effect::kTimeSkew) continue;
+    const double late_s = step.parameter[0].estimate.value;
+    if (step.chosen.form == effect::kWheelset1Form) between_s -= late_s;
+    if (step.chosen.form == effect::kWheelset2Form) between_s += late_s;
+  }
+  const double late = std::abs(between_s) * *config.input.speed_mps / *config.car.wheelbase_m;
+  FaultView& faults = out.circumstances.faults;
+  const auto is_excused = [&](const Fault& fault) {
+    const double off = std::abs(fault.size / config.input.sample_rate_hz - 1.0);
+    return fault.kind == FaultKind::kWrongSampleRate && std::abs(off - late) < kRateExcused;
+  };
+  auto* const end = faults.faults.data() + faults.count;
+  const auto* const left = std::remove_if(faults.faults.data(), end, is_excused);
+  if (left == end) return;
+  faults.count = static_cast<std::size_t>(left - faults.faults.data());
+  std::erase_if(out.identified.faults.list, [](const FaultFinding& fault) {
+    return fault.name == name_of(FaultKind::kWrongSampleRate);
+  });
+}
+
 void hold_back(Explained& out) noexcept {
   if (out.withheld || out.drifts) return;
   name_misplaced(out);
@@ -123,7 +148,8 @@ effect::ExplainerConfig explainer_config(const Config& config, const Explained& 
   effect::ExplainerConfig out = explainer_config(config);
   disallow_mimics(known.circumstances.faults, out);
   for (std::size_t i = 0; i < effect::kEffects; ++i)
-    out.allowed[i] = out.allowed[i] && !known.needless[i];
+    out.allowed[i] = out.allowed[i] && !known.needless.effect[i];
+  out.two_late = !known.needless.second_late;
   return out;
 }
 
@@ -133,16 +159,32 @@ bool judge_sums(const Config& config, const effect::Diagnosis& diagnosis,
   return out.explanation.conclusion != effect::Conclusion::kNotReady;
 }
 
-effect::Effect needless_effect(const effect::Explanation& e) noexcept {
+std::size_t needless_step(const effect::Explanation& e) noexcept {
   for (std::size_t i = 0; i < e.step_count; ++i) {
     const effect::Step& step = e.step[i];
     const Estimate& first = step.parameter[0].estimate;
     if (step.chosen.effect == effect::Effect::kTimeSkew && std::abs(first.value) < 2.0 * first.std)
-      return step.chosen.effect;
-    if (is_below_nothing(step)) return step.chosen.effect;
-    if (is_below_floor(step, i == 0, e.floor_nmse)) return step.chosen.effect;
+      return i;
+    if (is_below_nothing(step) || is_below_floor(step, i == 0, e.floor_nmse)) return i;
   }
-  return effect::Effect::kUnknown;
+  return e.step_count;
+}
+
+bool take_needless(const effect::Explanation& e, Needless& known) noexcept {
+  const std::size_t needless = needless_step(e);
+  if (needless == e.step_count) return false;
+  const effect::Effect effect = e.step[needless].chosen.effect;
+  const auto late_before = [&e, needless] {
+    const auto* const end = e.step.data() + needless;
+    return std::any_of(e.step.data(), end, [](const effect::Step& step) {
+      return step.chosen.effect == effect::Effect::kTimeSkew;
+    });
+  };
+  if (effect == effect::Effect::kTimeSkew && late_before())
+    known.second_late = true;
+  else
+    known.effect[static_cast<std::size_t>(effect)] = true;
+  return true;
 }
 
 double left_nmse(const Explained& explained) noexcept {

@@ -20,11 +20,18 @@ inline constexpr double kBelowFloor = 0.85;  ///< times the floor: less than sen
 
 /// An effect that was added and is none: a channel late by less than twice what its lateness may be
 /// wrong by, a stop or a friction with memory below nothing, or a later or faint one beside a model
-/// that left less without it than sensors and rounding do. kUnknown where each is needed.
-[[nodiscard]] effect::Effect needless_effect(const effect::Explanation& explanation) noexcept;
+/// that left less without it than sensors and rounding do. Its step, or step_count where each is
+/// needed.
+[[nodiscard]] std::size_t needless_step(const effect::Explanation& explanation) noexcept;
+/// Adds it to those that are known. False where there is none.
+[[nodiscard]] bool take_needless(const effect::Explanation& explanation, Needless& known) noexcept;
 
 /// One fault more, beside which no effect is named.
 void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept;
+
+/// Takes back a wrong sample rate that was told by the wheelsets' delay where the explanation has
+/// wheelsets that are late by as much.
+void excuse_rate(const Config& config, Explained& out) noexcept;
 
 /// Takes back what was named without being it, once the floor is known. Where the motion says that
 /// the sensors do not tell that of this truck, and the model leaves much too or takes it for a

@@ -28,11 +28,16 @@ int first_term(const Model& model, std::size_t i) noexcept {
   return term;
 }
 
-bool contains(const Model& model, Effect effect) noexcept {
+/// Whether a candidate has its place taken. Two channels may be late beside the third.
+bool contains(const Model& model, const Candidate& candidate, bool two_late) noexcept {
+  std::size_t same = 0;
   for (std::size_t i = 0; i < model.count; ++i) {
-    if (model.effect[i].effect == effect) return true;
+    if (model.effect[i].effect != candidate.effect) continue;
+    if (candidate.effect != Effect::kTimeSkew || model.effect[i].form == candidate.form)
+      return true;
+    ++same;
   }
-  return false;
+  return same >= (two_late ? 2U : 1U);
 }
 
 /// Signs that physics asks for: of the effect's first coefficient, and friction that does not
@@ -104,7 +109,7 @@ void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& 
   list_candidates(base_of(now), grids_, candidates_);
   for (std::size_t i = 0; i < candidates_.count; ++i) {
     const Candidate& candidate = candidates_.item[i];
-    if (contains(model, candidate.effect)) continue;
+    if (contains(model, candidate, two_late_)) continue;
     if (!allowed_[static_cast<std::size_t>(candidate.effect)]) continue;
     const ModelFit fit = fitter_.fit(model.with(candidate));
     if (!fit.ok || !plausible(candidate, fit, now.terms)) continue;
@@ -252,6 +257,7 @@ Explanation Explainer::explain(const Sums& sums, const ExplainerConfig& config) 
   const GramStore& store = sums.store;
   if (store.count() < kFewestEntries || !evidence_.load(store)) return out;
   allowed_ = config.allowed;
+  two_late_ = config.two_late;
   if (config.base_viscous) {
     list_candidates({}, grids_, candidates_);
     out.model = out.model.with(candidates_.item[0]);
@@ -357,6 +363,9 @@ std::array<double, 2> Explainer::beside(const Model& model, std::size_t i, int a
 /// is now the best, and a late channel, which is no column any more.
 void Explainer::keep(const GramStore& store, const Explanation& known, Explanation& out,
                      ModelFit& now) noexcept {
+  std::size_t newest_late = 0;
+  for (std::size_t i = 0; i < known.step_count; ++i)
+    if (known.step[i].chosen.effect == Effect::kTimeSkew) newest_late = i;
   for (std::size_t i = 0; i < known.step_count; ++i) {
     const bool late = known.step[i].chosen.effect == Effect::kTimeSkew;
     if (i > 0 && !late) continue;
@@ -373,7 +382,7 @@ void Explainer::keep(const GramStore& store, const Explanation& known, Explanati
     }
     out.model = out.model.with(member);
     now = settle(store, out.model);
-    if (late) {
+    if (late && i == newest_late) {
       // More than its column to first order, by which it was chosen; in other weights hardly less.
       step.gain = std::max(step.gain, 1.0 - now.held_out_nmse / step.held_out_nmse_before);
       step.held_out_nmse_after = (1.0 - step.gain) * step.held_out_nmse_before;
@@ -471,17 +480,23 @@ bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
   return true;
 }
 
-Estimate Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
-                             const Candidate& skew) noexcept {
-  if (diagnosis.store().count() < kFewestEntries || !evidence_.load(diagnosis.store())) return {};
+std::array<Estimate, kChannels> Explainer::lateness(const Diagnosis& diagnosis, const Model& model,
+                                                    const Model& late) noexcept {
+  std::array<Estimate, kChannels> out{};
+  if (diagnosis.store().count() < kFewestEntries || !evidence_.load(diagnosis.store())) return out;
   Model with;
   for (std::size_t i = 0; i < model.count; ++i)
-    if (model.effect[i].count > 0) with = with.with(model.effect[i]);
-  const int term = first_term(with, with.count);
-  with = with.with(skew);
+    if (model.effect[i].effect != Effect::kTimeSkew) with = with.with(model.effect[i]);
+  const std::size_t others = with.count;
+  for (std::size_t i = 0; i < late.count; ++i) with = with.with(late.effect[i]);
   const ModelFit fit = settle(diagnosis.store(), with);
-  if (!fit.ok) return {};
-  return {fit.theta[term], std::sqrt(std::max(fit.covariance(term, term), 0.0))};
+  if (!fit.ok) return out;
+  for (std::size_t i = others; i < with.count; ++i) {
+    const int term = first_term(with, i);
+    out[with.effect[i].form] = {fit.theta[term],
+                                std::sqrt(std::max(fit.covariance(term, term), 0.0))};
+  }
+  return out;
 }
 
 /// Large residuals, too, are rare in time on a surrogate without impacts: those of sticking.

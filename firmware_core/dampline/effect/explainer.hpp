@@ -12,9 +12,10 @@ struct ExplainerConfig {
   double moving_mass_kg{37200.0};
   double floor_nmse{0.0};                      ///< of a complete model, from elsewhere; 0: unknown
   bool base_viscous{false};                    ///< c v belongs to the base model
+  bool two_late{true};                         ///< of three channels, beside the third
   std::array<bool, kEffects> allowed = all();  ///< candidates, by Effect
   /// An explanation of the same record by wider grids, or with a channel late that is now set
-  /// right: its base counts, its first effect and its late channel stay, what is beside them is
+  /// right: its base counts, its first effect and its late channels stay, what is beside them is
   /// judged anew. Null: there is none.
   const Explanation* known{nullptr};
 
@@ -48,10 +49,11 @@ class Explainer {
   };
   [[nodiscard]] Prediction predict(const Diagnosis& other, const Explanation& by) noexcept;
 
-  /// How late a channel of a record still is beside a model's other effects, s. Precondition: the
-  /// Diagnosis has the grids of the model.
-  [[nodiscard]] Estimate lateness(const Diagnosis& diagnosis, const Model& model,
-                                  const Candidate& skew) noexcept;
+  /// How late channels of a record still are beside a model's other effects, s. `late`: their time
+  /// skews. Precondition: the Diagnosis has the grids of the model.
+  [[nodiscard]] std::array<Estimate, kChannels> lateness(const Diagnosis& diagnosis,
+                                                         const Model& model,
+                                                         const Model& late) noexcept;
 
   struct Surrogates {
     const Diagnosis& base;
@@ -118,6 +120,7 @@ class Explainer {
   CandidateList candidates_;
   Detail detail_;
   std::array<bool, kEffects> allowed_{};
+  bool two_late_{true};
   Grids grids_;
 };
 

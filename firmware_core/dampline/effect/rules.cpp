@@ -54,6 +54,7 @@ bool is_bent_spring(Effect effect) noexcept {
 double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept {
   const Effect known = beside.effect;
   const Effect effect = candidate.effect;
+  if (known == Effect::kTimeSkew && effect == Effect::kTimeSkew) return kLookalikeGain;
   // A late channel that was set right leaves nothing.
   if (beside.count == 0) return has_memory(effect) ? kLaterMemoryGain : kLaterGain;
   const bool one_channel = known == Effect::kTimeSkew && beside.form == candidate.form;

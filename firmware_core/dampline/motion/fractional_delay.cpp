@@ -15,16 +15,17 @@ double sinc(double x) {
 
 }  // namespace
 
-FractionalDelay::FractionalDelay(const LateChannel& lateness, double sample_rate_hz)
-    : channel_{lateness.channel} {
-  const double late = lateness.late_s * sample_rate_hz;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kTaps; ++i) {
-    const double x = static_cast<double>(i) - kHalf - late;
-    taps_[i] = sinc(x) * blackman(x / (kHalf + 1));
-    sum += taps_[i];
+FractionalDelay::FractionalDelay(const Lateness& late_s, double sample_rate_hz) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    late_[c] = late_s[c] != 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kTaps; ++i) {
+      const double x = static_cast<double>(i) - kHalf - late_s[c] * sample_rate_hz;
+      taps_[c][i] = sinc(x) * blackman(x / (kHalf + 1));
+      sum += taps_[c][i];
+    }
+    for (double& tap : taps_[c]) tap /= sum;
   }
-  for (double& tap : taps_) tap /= sum;
 }
 
 std::optional<Sample> FractionalDelay::next(const Sample& sample) {
@@ -37,9 +38,12 @@ std::optional<Sample> FractionalDelay::next(const Sample& sample) {
   ring_.back() = sample;
   if (++count_ < kTaps) return std::nullopt;
   Sample out = ring_[kHalf];
-  double value = 0.0;
-  for (std::size_t i = 0; i < kTaps; ++i) value += taps_[i] * ring_[i].accel_mps2[channel_];
-  out.accel_mps2[channel_] = value;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    if (!late_[c]) continue;
+    double value = 0.0;
+    for (std::size_t i = 0; i < kTaps; ++i) value += taps_[c][i] * ring_[i].accel_mps2[c];
+    out.accel_mps2[c] = value;
+  }
   return out;
 }
 

@@ -18,19 +18,16 @@ namespace dampline {
   return 0.42 + 0.5 * std::cos(turn) + 0.08 * std::cos(2.0 * turn);
 }
 
-/// A channel that shows the past.
-struct LateChannel {
-  std::size_t channel{0};
-  double late_s{0.0};  ///< 0: none; some 20 ms at most
-};
+/// By how much each channel shows the past, s; some 20 ms at most.
+using Lateness = std::array<double, kChannels>;
 
-/// Sets a late channel right: x(t + late) by a sinc of 49 taps with Blackman's weights, flat up to
+/// Sets late channels right: x(t + late) by a sinc of 49 taps with Blackman's weights, flat up to
 /// 0.43 of the sampling rate. Samples come kHalf later.
 class FractionalDelay {
  public:
   static constexpr int kHalf = 24;
 
-  FractionalDelay(const LateChannel& late, double sample_rate_hz);
+  FractionalDelay(const Lateness& late_s, double sample_rate_hz);
   /// Takes a sample; the one kHalf before, where all around it are there. Samples that are no
   /// number stay that, and a gap starts anew.
   [[nodiscard]] std::optional<Sample> next(const Sample& sample);
@@ -38,8 +35,9 @@ class FractionalDelay {
  private:
   static constexpr std::size_t kTaps = 2 * kHalf + 1;
 
-  std::size_t channel_;
-  std::array<double, kTaps> taps_{};
+  using Taps = std::array<double, kTaps>;
+  std::array<bool, kChannels> late_{};
+  std::array<Taps, kChannels> taps_{};
   std::array<Sample, kTaps> ring_{};
   std::size_t count_{0};
   std::int64_t last_tick_{0};
