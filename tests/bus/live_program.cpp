@@ -42,7 +42,11 @@ LiveProgram::LiveProgram(const Folder& folder, const std::string& interface,
   if (!child_.running()) throw std::runtime_error{"ended at once: " + child_.error()};
 }
 
-std::uint64_t LiveProgram::memory_kib(const std::string& name) const {
+std::uint64_t LiveProgram::memory_kib(const std::string& name) {
+  if (!child_.running()) {
+    const Ended ended = child_.wait();
+    throw std::runtime_error{"ended with " + std::to_string(ended.status) + ": " + ended.error};
+  }
   const std::string status = read_file("/proc/" + std::to_string(child_.pid()) + "/status");
   const std::size_t at = status.find(name + ":");
   if (at == std::string::npos) throw std::runtime_error{"no " + name};

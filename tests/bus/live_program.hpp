@@ -34,8 +34,8 @@ class LiveProgram {
   /// Returns when it listens. `run` is its run directory.
   LiveProgram(const Folder& folder, const std::string& interface, std::filesystem::path run,
               const Words& options = {});
-  /// Memory that it holds, by its name in /proc/PID/status, in KiB.
-  [[nodiscard]] std::uint64_t memory_kib(const std::string& name) const;
+  /// Memory that it holds, by its name in /proc/PID/status, in KiB. Throws when it has ended.
+  [[nodiscard]] std::uint64_t memory_kib(const std::string& name);
   void signal(int number) const noexcept { child_.signal(number); }
   [[nodiscard]] const std::filesystem::path& run() const noexcept { return run_; }
   /// Ends it by SIGINT. Throws when it does not end well; returns parameters.json.

@@ -27,7 +27,7 @@ struct Needless {
 /// A truck record explained.
 struct Explained : effect::Judgement {
   effect::Circumstances circumstances;  ///< of the record
-  Lateness lateness{};                  ///< of channels that were set right for the explanation
+  ChannelLateness lateness{};           ///< of channels that were set right for the explanation
   /// The truck under the other end of the body, where the explanation takes it in; or null.
   std::shared_ptr<const OtherTruck> other;
   double without_other_nmse{0.0};  ///< held-out error of the base without it

@@ -111,8 +111,8 @@ LateEstimates late_of(const effect::Explanation& e) noexcept {
   return out;
 }
 
-Lateness values_of(const LateEstimates& late_s) noexcept {
-  Lateness out{};
+ChannelLateness values_of(const LateEstimates& late_s) noexcept {
+  ChannelLateness out{};
   for (std::size_t c = 0; c < kChannels; ++c) out[c] = late_s[c].value;
   return out;
 }
@@ -134,7 +134,7 @@ class CloserLook {
 
   /// Explains with these grids and channels set right; `left`: how late they still are.
   effect::Explanation explain(const Explained& known, const effect::Grids& grids,
-                              const Lateness& lateness, LateEstimates& left) {
+                              const ChannelLateness& lateness, LateEstimates& left) {
     TruckPassOptions reading{grids, lateness, options_.show_progress, {}, known.other.get()};
     const effect::SurrogateConfig law =
         with_memory(surrogate_config(core_, known.explanation, noise_), known.explanation);
@@ -194,7 +194,7 @@ void look_closer(const Config& config, const ExplainOptions& options, const Truc
   CloserLook look{config, options, first, noise, explainer};
   Explained now = out;
   const bool late = late_channels(out.explanation).count > 0;
-  Lateness lateness = values_of(late_of(out.explanation));
+  ChannelLateness lateness = values_of(late_of(out.explanation));
   bool set_right = !late;
   for (int round = 0; round < kRounds; ++round) {
     effect::Grids grids;

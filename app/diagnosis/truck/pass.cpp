@@ -45,7 +45,7 @@ TruckPass pass_of(const Config& config, const SourceOptions& source,
   pass.run = std::make_unique<ExplainRun>(config, pass.feed->signals(), options.grids);
   const IdentifierConfig& core = pass.run->config();
   FractionalDelay alignment{options.lateness, core.estimator.sample_rate_hz};
-  if (options.lateness != Lateness{} || options.other != nullptr) {
+  if (options.lateness != ChannelLateness{} || options.other != nullptr) {
     IdentifierConfig aligned = core;
     if (options.other != nullptr) aligned.estimator.far_mass_kg = options.other->mass_kg.value;
     pass.aligned = std::make_unique<DiagnosisRun>(aligned, options.grids);

@@ -28,8 +28,8 @@ struct TruckPass {
 };
 
 struct TruckPassOptions {
-  effect::Grids grids{};  ///< of candidates; their scale is learnt where it is 0
-  Lateness lateness{};    ///< of channels that are set right for the diagnosis
+  effect::Grids grids{};       ///< of candidates; their scale is learnt where it is 0
+  ChannelLateness lateness{};  ///< of channels that are set right for the diagnosis
   bool show_progress{false};
   /// Sees every sample that the diagnosis took.
   std::function<void(const Sample&, const UpdateResult&, const effect::Diagnosis&)> watch{};

@@ -15,7 +15,7 @@ double sinc(double x) {
 
 }  // namespace
 
-FractionalDelay::FractionalDelay(const Lateness& late_s, double sample_rate_hz) {
+FractionalDelay::FractionalDelay(const ChannelLateness& late_s, double sample_rate_hz) {
   for (std::size_t c = 0; c < kChannels; ++c) {
     late_[c] = late_s[c] != 0.0;
     double sum = 0.0;

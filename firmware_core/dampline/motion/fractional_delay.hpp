@@ -19,7 +19,7 @@ namespace dampline {
 }
 
 /// By how much each channel shows the past, s; some 20 ms at most.
-using Lateness = std::array<double, kChannels>;
+using ChannelLateness = std::array<double, kChannels>;
 
 /// Sets late channels right: x(t + late) by a sinc of 49 taps with Blackman's weights, flat up to
 /// 0.43 of the sampling rate. Samples come kHalf later.
@@ -27,7 +27,7 @@ class FractionalDelay {
  public:
   static constexpr int kHalf = 24;
 
-  FractionalDelay(const Lateness& late_s, double sample_rate_hz);
+  FractionalDelay(const ChannelLateness& late_s, double sample_rate_hz);
   /// Takes a sample; the one kHalf before, where all around it are there. Samples that are no
   /// number stay that, and a gap starts anew.
   [[nodiscard]] std::optional<Sample> next(const Sample& sample);
