@@ -3,7 +3,9 @@
 // the program. bench/sensors has every row on more records.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -118,6 +120,47 @@ INSTANTIATE_TEST_SUITE_P(Corners, WrongLowPassTest,
                                          Declared{"TooLow", 80.0, 60.0},
                                          Declared{"Unknown", 60.0, 0.0}),
                          [](const auto& declared) { return std::string{declared.param.name}; });
+
+struct Delays {
+  const char* name;
+  std::array<double, kChannels> late_s;  ///< taken so much later than the record says
+};
+
+class LateChannelsTest : public testing::TestWithParam<Delays> {};
+
+/// A converter that takes one channel after the other. The second passed for presliding, backlash
+/// or a mode, and the wheelsets' delay for a wrong rate.
+TEST_P(LateChannelsTest, AreTimeSkewsAndNothingElse) {
+  for (const std::size_t which : {1U, 2U}) {
+    const PlainTruck& truck = kPlainTrucks.at(which);
+    const PlainSensors sensors{.late_s = GetParam().late_s};
+    const test::TemporaryFile file{test::plain_record(truck, sensors, 150.0, 41)};
+    Config config = test::plain_config(truck, sensors);
+    config.car.wheelbase_m = test::plain::kWheelbaseM;
+    config.input.speed_mps = truck.speed_mps;
+    const auto found = test::explained_from(config, file.path());
+    EXPECT_TRUE(found.result.faults.list.empty()) << truck.name;
+    std::map<std::string, double> shown_s;
+    for (const auto& step : found.explanation.steps) {
+      EXPECT_EQ(step.effect, "time_skew") << truck.name;
+      for (const Parameter& p : step.parameters) shown_s[p.name] = p.value;
+    }
+    for (const std::size_t wheelset : {1U, 2U}) {
+      const double early_s = GetParam().late_s[wheelset] - GetParam().late_s[0];
+      const double seen_s =
+          shown_s["time_skew_wheelset" + std::to_string(wheelset)] - shown_s["time_skew_frame"];
+      EXPECT_NEAR(seen_s, -early_s, 0.15e-3) << truck.name << " wheelset " << wheelset;
+    }
+    const Parameter& level = parameter(found.result, "coulomb");
+    EXPECT_NEAR(level.value, truck.coulomb_n, 0.01 * truck.coulomb_n) << truck.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, LateChannelsTest,
+                         testing::Values(Delays{"OneAfterTheOther", {0.0, 1.1e-3, 2.2e-3}},
+                                         Delays{"TheOtherWayRound", {2.2e-3, 1.1e-3, 0.0}},
+                                         Delays{"OneWheelset", {0.0, 0.8e-3, 0.0}}),
+                         [](const auto& delays) { return std::string{delays.param.name}; });
 
 /// Motion of the wheelsets that the sampling folds is not the noise that was declared.
 TEST(PlainSensorsNoise, IsNotExceededByWhatIsFolded) {

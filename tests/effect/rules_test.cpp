@@ -79,6 +79,11 @@ TEST(Rules, ALateChannelThatWasSetRightHidesNothing) {
   EXPECT_EQ(judge_step(Model{}.with(late), false, true, mode), Verdict::kYes);
 }
 
+TEST(Rules, ASecondLateChannelMustGainMoreThanTheFirstLeaves) {
+  EXPECT_EQ(later(Effect::kTimeSkew, step(Effect::kTimeSkew, 0.05, 10.0, 25.0)), Verdict::kStop);
+  EXPECT_EQ(later(Effect::kTimeSkew, step(Effect::kTimeSkew, 0.07, 10.0, 25.0)), Verdict::kYes);
+}
+
 TEST(Rules, ALateChannelLooksLikeAWrongGainOfTheSame) {
   Step gain = step(Effect::kGainError, 0.09, 10.0, 25.0);
   gain.chosen.form = kFrameForm;
