@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "drivers/blackbox/source.hpp"
 #include "tests/blackbox.hpp"
 
@@ -122,6 +124,79 @@ TEST(BlackboxSource, MovesARunThatBeganBeforeTheOneBeforeHadEnded) {
   for (std::size_t i = 51; i < 100; ++i)
     EXPECT_EQ(content.frames[i].time_ns - content.frames[50].time_ns,
               static_cast<std::int64_t>(i - 50) * 1'111'000);
+}
+
+// Its files are of one run, and stay as far apart as they were.
+TEST(BlackboxSource, MovesAllFilesOfARun) {
+  const BoxFolder folder;
+  auto config = test::box_config(folder.path());
+  test::write_box(config, 1000, 50);
+  config.rotate_bytes = 4096;
+  test::write_box(config, 0, 500);
+  ASSERT_GT(folder.files(), 4U);
+  const auto content = read_box(folder.path());
+  ASSERT_EQ(content.frames.size(), 550U);
+  EXPECT_EQ(content.findings.runs_moved, 1U);
+  EXPECT_EQ(content.health.reordered, 0U);
+  for (std::size_t i = 50; i < 550; ++i)
+    ASSERT_EQ(content.frames[i].time_ns - content.frames[49].time_ns,
+              static_cast<std::int64_t>(i - 50) * 1'111'000);
+  EXPECT_EQ(content.findings.first_ns, content.frames[0].time_ns);
+  EXPECT_EQ(content.findings.newest_ns, content.frames.back().time_ns);
+}
+
+// A clock that stands at the ends of what it can hold, as in a file that was made to do harm.
+TEST(BlackboxSource, ATimeThatIsMovedStopsAtTheEndOfTheClock) {
+  constexpr std::int64_t kEarliest = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max();
+  const BoxFolder folder;
+  const auto write = [&](std::vector<std::int64_t> times_ns) {
+    const auto writer = open_box(test::box_config(folder.path()));
+    CanFrame frame = numbered_frame(0);
+    for (const std::int64_t time_ns : times_ns) {
+      frame.time_ns = time_ns;
+      writer->write(frame);
+    }
+  };
+  write({kLatest - 10});
+  write({0, 9, 10, 11, kLatest});
+  auto content = read_box(folder.path());
+  ASSERT_EQ(content.frames.size(), 6U);
+  EXPECT_EQ(content.frames[1].time_ns, kLatest - 10);
+  EXPECT_EQ(content.frames[2].time_ns, kLatest - 1);
+  for (const std::size_t i : {3U, 4U, 5U}) EXPECT_EQ(content.frames[i].time_ns, kLatest) << i;
+  EXPECT_EQ(content.findings.runs_moved, 1U);
+  write({kEarliest});
+  content = read_box(folder.path());
+  EXPECT_EQ(content.findings.runs_moved, 2U);
+  EXPECT_EQ(content.frames.back().time_ns, kLatest) << "held, as no clock reaches so far";
+  EXPECT_EQ(content.health.reordered, 1U);
+}
+
+TEST(BlackboxSource, SaysWhereTheLastFileEnds) {
+  const BoxFolder folder;
+  test::write_box(test::box_config(folder.path()), 0, 10);
+  test::write_box(test::box_config(folder.path()), 10, 10);
+  const auto cut = [&](std::uint32_t number, std::uintmax_t bytes) {
+    const auto size = std::filesystem::file_size(folder.file(number));
+    std::filesystem::resize_file(folder.file(number), size - std::min(bytes, size));
+  };
+  cut(1, 3);
+  auto content = read_box(folder.path());
+  EXPECT_EQ(content.findings.torn_ends, 1U);
+  EXPECT_EQ(content.findings.files, 2U);
+  EXPECT_FALSE(content.health.truncated) << "a run came after it";
+  EXPECT_EQ(content.health.dropped, 1U) << "the run behind it knows how many there were";
+  cut(2, 3);
+  content = read_box(folder.path());
+  EXPECT_EQ(content.findings.torn_ends, 2U);
+  EXPECT_TRUE(content.health.truncated);
+  cut(2, 1U << 20U);
+  content = read_box(folder.path());
+  EXPECT_EQ(content.findings.torn_ends, 2U);
+  EXPECT_EQ(content.findings.files, 1U);
+  EXPECT_TRUE(content.health.truncated);
+  EXPECT_EQ(content.numbers(), test::range(0, 9));
 }
 
 TEST(BlackboxSource, HoldsATimeThatGoesBackWithinARun) {

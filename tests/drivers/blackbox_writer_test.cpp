@@ -143,6 +143,23 @@ TEST(BlackboxWriter, AFilesHourBeginsWithItsFirstRecord) {
       << "the end of one file and the beginning of the next";
 }
 
+// The monotonic clock counts from the start of the computer, and nobody tells it before a tick.
+TEST(BlackboxWriter, WhatIsWrittenBeforeTheFirstTickAgesFromThere) {
+  const BoxFolder folder;
+  const auto writer = open_box(test::box_config(folder.path()));
+  writer->write(numbered_frame(0));
+  const std::uint64_t begun = writer->health().syncs;
+  constexpr std::int64_t kUpNs = 1'000'000 * kSecondNs;
+  writer->tick(kUpNs);
+  EXPECT_EQ(writer->health().syncs, begun);
+  writer->tick(kUpNs + 3599 * kSecondNs);
+  writer->write(numbered_frame(1));
+  EXPECT_EQ(folder.files(), 1U);
+  writer->tick(kUpNs + 3600 * kSecondNs);
+  writer->write(numbered_frame(2));
+  EXPECT_EQ(folder.files(), 2U);
+}
+
 TEST(BlackboxWriter, RotatesByTimeAndWhenAsked) {
   const BoxFolder folder;
   const auto writer = open_box(test::box_config(folder.path()));
@@ -282,6 +299,31 @@ TEST(BlackboxWriter, SaysWhatIsWrongWithItsConfiguration) {
   EXPECT_THAT(BlackboxWriter::open(test::box_config(file.path())).error_text(),
               HasSubstr(file.path().string() + ": cannot be made"));
   EXPECT_FALSE(BlackboxWriter::open(test::box_config(file.path() / "inside")).ok());
+}
+
+TEST(BlackboxWriter, TakesWhatStandsAtTheEdgesOfItsConfiguration) {
+  const auto opens = [](auto change) {
+    const BoxFolder folder;
+    auto config = test::box_config(folder.path());
+    change(config);
+    return BlackboxWriter::open(config).ok();
+  };
+  const auto names = [](std::size_t count, std::size_t length) {
+    return [=](BlackboxConfig& c) { c.interfaces.assign(count, std::string(length, 'n')); };
+  };
+  EXPECT_TRUE(opens(names(1, 1)));
+  EXPECT_FALSE(opens(names(1, 0)));
+  EXPECT_TRUE(opens(names(27, 15)));
+  EXPECT_FALSE(opens(names(28, 15)));
+  EXPECT_TRUE(opens([](BlackboxConfig& c) { c.rotate_bytes = 4096; }));
+  EXPECT_FALSE(opens([](BlackboxConfig& c) { c.rotate_bytes = 4095; }));
+  for (const auto time :
+       {&BlackboxConfig::rotate_ns, &BlackboxConfig::sync_interval_ns, &BlackboxConfig::retry_ns}) {
+    EXPECT_TRUE(opens([=](BlackboxConfig& c) { c.*time = 1; }));
+    EXPECT_FALSE(opens([=](BlackboxConfig& c) { c.*time = 0; }));
+  }
+  EXPECT_TRUE(opens([](BlackboxConfig& c) { c.keep_ns = 0; }));
+  EXPECT_FALSE(opens([](BlackboxConfig& c) { c.keep_ns = -1; }));
 }
 
 TEST(BlackboxWriter, LeavesADirectoryOfAnotherVersionAlone) {

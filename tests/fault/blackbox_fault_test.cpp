@@ -214,6 +214,20 @@ TEST(BlackboxFault, AFullDiskStopsRecordingWhichGoesOnByItself) {
   EXPECT_EQ(content.of(EventKind::kRecordingStopped)[0].value, ENOSPC);
 }
 
+TEST(BlackboxFault, AFileThatTookNoRecordIsRemoved) {
+  const BoxFolder folder;
+  const auto writer = test::open_box(test::box_config(folder.path()));
+  writer->tick(0);
+  writer->write(numbered_frame(0));
+  writer->write(numbered_frame(1));
+  ASSERT_EQ(folder.files(), 1U);
+  const ArmedFault fault{{Call::kWrite, 1, ENOSPC, true}};
+  writer->tick(kSecondNs);
+  EXPECT_FALSE(writer->health().recording);
+  EXPECT_EQ(writer->health().lost, 2U);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
 TEST(BlackboxFault, WhatFailedBeforeTheFirstTickIsTriedAgainAtIt) {
   const BoxFolder folder;
   const auto writer = test::open_box(test::box_config(folder.path()));
