@@ -110,6 +110,30 @@ TEST(AscLine, ReadsCanFdFrames) {
   EXPECT_TRUE(asc("1.0 CANFD 1 Rx 1 0 0 1 1 5").frame.fd);
 }
 
+// A remote frame is classic, whatever flags stand in its line.
+TEST(AscLine, ReadsRemoteFramesInCanFdLines) {
+  const ParsedLine out = asc("1.0 CANFD 1 Rx 1 1 1 1 0 130 130 3000");
+  ASSERT_EQ(out.kind, kFrame) << out.expected;
+  EXPECT_TRUE(out.frame.remote);
+  EXPECT_FALSE(out.frame.fd);
+  EXPECT_EQ(out.frame.fd_flags, 0);
+  EXPECT_EQ(out.frame.length, 1);
+}
+
+TEST(AscLine, TellsClassicFromCanFdWhereTheFlagsDo) {
+  std::string bytes;
+  for (int i = 0; i < 64; ++i) bytes += " 11";
+  const ParsedLine longest = asc("1.0 CANFD 1 Rx 1 0 0 f 64" + bytes + " 130 130 0");
+  ASSERT_EQ(longest.kind, kFrame) << longest.expected;
+  EXPECT_EQ(longest.frame.length, 64);
+  EXPECT_TRUE(longest.frame.fd) << "no classic frame is so long";
+  EXPECT_FALSE(asc("1.0 CANFD 1 Rx 1 0 0 8 8 1 2 3 4 5 6 7 8 130 130 0").frame.fd);
+  EXPECT_TRUE(asc("1.0 CANFD 1 Rx 1 0 0 9 12 1 2 3 4 5 6 7 8 9 A B C 130 130 0").frame.fd);
+  EXPECT_TRUE(asc("1.0 CANFD 1 Rx 1 1 0 1 1 5 130 130 0").frame.fd) << "BRS is of CAN FD";
+  EXPECT_TRUE(asc("1.0 CANFD 1 Rx 1 0 1 1 1 5 130 130 0").frame.fd) << "ESI is of CAN FD";
+  EXPECT_FALSE(asc("1.0 CANFD 1 Rx 1 0 0 1 1 5 130 130 EFFF").frame.fd);
+}
+
 TEST(TrcLine, ReadsEachTypeOfFrame) {
   for (const auto& [type, fd, flags, remote, error] :
        {std::tuple{"DT", false, 0, false, false}, std::tuple{"FD", true, 0, false, false},
@@ -160,6 +184,9 @@ TEST(TrcLine, ReadsBusesFromOneOn) {
   EXPECT_EQ(trc("1.2", "1) 1.0 0 Rx 0300 0").kind, kBad);
   EXPECT_EQ(trc("1.2", "1) 1.0 256 Rx 0300 0").kind, kBad);
   EXPECT_EQ(trc("1.2", "1) x 1 Rx 0300 0").column, 3);
+  const std::vector<std::string> lines{";$FILEVERSION=1.2", "1) 1.0 7 Rx 0300 0",
+                                       ";$FILEVERSION=1.1", "2) 2.0 Rx 0300 0"};
+  EXPECT_EQ(last_of<TrcParser>(lines).interface, "can1") << "without a column for it";
 }
 
 TEST(TrcLine, ARemoteFrameMaySayRtr) {
@@ -176,6 +203,7 @@ TEST(TrcLine, TakesItsColumnsFromTheHeader) {
   EXPECT_EQ(out.frame.id, 0x300U);
   EXPECT_EQ(out.frame.time_ns, 7'500'000);
   EXPECT_EQ(out.frame.data[0], 0xAB);
+  EXPECT_EQ(last_of<TrcParser>({";$FILEVERSION=1.1 ", "1) 1.0 Tx 0300 0"}).kind, kFrame);
   EXPECT_EQ(last_of<TrcParser>({";$FILEVERSION=1.1  ", "1) 1.0 Tx 0300 0"}).kind, kFrame);
   EXPECT_EQ(last_of<TrcParser>({"; a comment"}).kind, kNoFrame);
   EXPECT_EQ(last_of<TrcParser>({"   "}).kind, kNoFrame);

@@ -2,12 +2,14 @@
 // Compressed by the programs that people use: gzip and zstd.
 #include "drivers/bytes/byte_stream.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -131,6 +133,185 @@ TEST(ByteStream, APipeIsReadAgainFromItsBeginningUntilTooMuchHasPassed) {
   EXPECT_EQ(read_all(path).bytes, text);
   EXPECT_EQ(read_all(path).bytes, text);
   ::close(ends[0]);
+}
+
+/// Both ends of a pipe, and the path of the one to read from.
+struct OpenPipe {
+  std::array<int, 2> ends{};
+  OpenPipe() { EXPECT_EQ(::pipe(ends.data()), 0); }
+  OpenPipe(const OpenPipe&) = delete;
+  OpenPipe& operator=(const OpenPipe&) = delete;
+  ~OpenPipe() {
+    close_writer();
+    ::close(ends[0]);
+  }
+  void close_writer() {
+    if (ends[1] >= 0) ::close(ends[1]);
+    ends[1] = -1;
+  }
+  void write(std::string_view bytes) const {
+    EXPECT_EQ(::write(ends[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(ends[0]); }
+};
+
+/// What a stream gives of so many bytes that are put into its pipe 32 KiB at a time.
+std::size_t pass_through(ByteStream& stream, const OpenPipe& pipe, std::size_t bytes) {
+  const std::string piece(std::size_t{32} * 1024, 'p');
+  std::array<char, 65536> part{};
+  std::size_t count = 0;
+  for (std::size_t put = 0; put < bytes;) {
+    const std::size_t more = std::min(piece.size(), bytes - put);
+    pipe.write(std::string_view{piece}.substr(0, more));
+    for (put += more; count < put;) count += stream.read(part).count;
+  }
+  return count;
+}
+
+TEST(ByteStream, KeepsTheFirst8MiBOfAPipe) {
+  for (const std::size_t more : {0U, 1U}) {
+    OpenPipe pipe;
+    {
+      auto stream = ByteStream::open(pipe.path());
+      pass_through(stream.value(), pipe, ByteStream::kKept + more);
+    }
+    pipe.close_writer();
+    if (more == 0) {
+      EXPECT_EQ(read_all(pipe.path()).bytes.size(), ByteStream::kKept);
+    } else {
+      EXPECT_THAT(ByteStream::open(pipe.path()).error_text(), HasSubstr("was read already"));
+    }
+  }
+}
+
+TEST(ByteStream, SumsUpWhatPassedThroughAPipe) {
+  OpenPipe pipe;
+  pipe.write("abc");
+  auto stream = ByteStream::open(pipe.path());
+  std::array<char, 100> part{};
+  EXPECT_EQ(stream.value().read(part).count, 3U);
+  EXPECT_FALSE(ByteStream::passed_through(pipe.path())) << "not to its end";
+  pipe.close_writer();
+  EXPECT_EQ(stream.value().read(part).status, ByteStream::Status::kEnd);
+  const auto passed = ByteStream::passed_through(pipe.path());
+  ASSERT_TRUE(passed);
+  EXPECT_EQ(passed->bytes, 3U);
+  // FIPS 180-4, the first example.
+  EXPECT_EQ(passed->sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(read_all(pipe.path()).bytes, "abc");
+  EXPECT_EQ(ByteStream::passed_through(pipe.path())->bytes, 3U) << "once, though given twice";
+  EXPECT_FALSE(ByteStream::passed_through(TemporaryFile{"abc"}.path()));
+  EXPECT_FALSE(ByteStream::passed_through("/nonexistent"));
+}
+
+// A pipe may give single bytes, and what they are is known only with the fourth.
+TEST(ByteStream, KnowsCompressedDataThatComeByteByByte) {
+  const std::string text = log_text(3);
+  const std::string packed = made_by("gzip", text);
+  if (packed.empty()) GTEST_SKIP() << "gzip is not installed";
+  OpenPipe pipe;
+  auto stream = ByteStream::open(pipe.path());
+  std::string given;
+  std::array<char, 4> part{};
+  for (const char byte : packed) {
+    pipe.write({&byte, 1});
+    for (auto read = stream.value().read(part); read.count > 0; read = stream.value().read(part))
+      given.append(part.data(), read.count);
+  }
+  EXPECT_EQ(given, text);
+  OpenPipe other;
+  auto plain = ByteStream::open(other.path());
+  other.write("\x1F");
+  EXPECT_EQ(plain.value().read(part).status, ByteStream::Status::kNothingYet);
+  other.write("x");
+  EXPECT_EQ(plain.value().read(part).count, 2U) << "what begins like it and goes on otherwise";
+  EXPECT_EQ(part[0], '\x1F');
+  other.close_writer();
+  EXPECT_EQ(plain.value().read(part).status, ByteStream::Status::kEnd);
+}
+
+TEST(ByteStream, WaitsForAPipeOnly) {
+  using namespace std::chrono_literals;
+  OpenPipe pipe;
+  auto stream = ByteStream::open(pipe.path());
+  EXPECT_FALSE(stream.value().wait(0ns));
+  EXPECT_FALSE(stream.value().wait(1ms));
+  pipe.write("abc");
+  EXPECT_TRUE(stream.value().wait(1h));
+  std::array<char, 100> part{};
+  EXPECT_EQ(stream.value().read(part).count, 3U);
+  EXPECT_FALSE(stream.value().wait(0ns));
+  auto again = ByteStream::open(pipe.path());
+  EXPECT_TRUE(again.value().wait(0ns)) << "what it gave is kept";
+  pipe.close_writer();
+  EXPECT_TRUE(stream.value().wait(1h)) << "its end is something";
+  auto file = ByteStream::open(TemporaryFile{"abc"}.path());
+  EXPECT_TRUE(file.value().wait(0ns));
+}
+
+/// Standard input is something else for the time of a test.
+class OtherInput {
+ public:
+  explicit OtherInput(const std::string& path)
+      : before_{::dup(STDIN_FILENO)}, file_{::open(path.c_str(), O_RDONLY)} {
+    EXPECT_EQ(::dup2(file_, STDIN_FILENO), STDIN_FILENO);
+  }
+  ~OtherInput() {
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+    ::close(file_);
+  }
+  OtherInput(const OtherInput&) = delete;
+  OtherInput& operator=(const OtherInput&) = delete;
+
+ private:
+  int before_;
+  int file_;
+};
+
+TEST(ByteStream, StandardInputBeginsWhereTheShellHasItAndStaysThere) {
+  const std::string text = log_text(100);
+  const TemporaryFile file{text};
+  const OtherInput input{file.path()};
+  ASSERT_EQ(::lseek(STDIN_FILENO, 43, SEEK_SET), 43);
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(read_all("-").bytes, text.substr(43));
+    EXPECT_EQ(::lseek(STDIN_FILENO, 0, SEEK_CUR), 43);
+  }
+  EXPECT_EQ(ByteStream::open("-").value().name(), "standard input");
+}
+
+TEST(ByteStream, TellsTheShareOfAFileThatWasRead) {
+  const TemporaryFile file{std::string(1000, 'x')};
+  auto stream = ByteStream::open(file.path());
+  std::array<char, 250> part{};
+  EXPECT_EQ(stream.value().share_read(), 0.0);
+  std::size_t count = 0;
+  for (auto read = stream.value().read(part); read.count > 0; read = stream.value().read(part)) {
+    count += read.count;
+    EXPECT_DOUBLE_EQ(stream.value().share_read().value(), static_cast<double>(count) / 1000.0);
+  }
+  EXPECT_EQ(stream.value().share_read(), 1.0);
+  const OtherInput input{file.path()};
+  ASSERT_EQ(::lseek(STDIN_FILENO, 500, SEEK_SET), 500);
+  auto half = ByteStream::open("-");
+  for (count = 0; count < 250;) count += half.value().read(part).count;
+  EXPECT_DOUBLE_EQ(half.value().share_read().value(), static_cast<double>(count) / 500.0);
+  auto growing = ByteStream::open(file.path());
+  std::ofstream{file.path(), std::ios::app} << std::string(1000, 'y');
+  while (growing.value().read(part).count > 0) {
+  }
+  EXPECT_EQ(growing.value().share_read(), 1.0) << "all that it was, and more";
+  EXPECT_FALSE(ByteStream::open(TemporaryFile{""}.path()).value().share_read());
+  const OpenPipe pipe;
+  EXPECT_FALSE(ByteStream::open(pipe.path()).value().share_read());
+}
+
+// The first page of a program's memory is a file that opens, and cannot be read.
+TEST(ByteStream, SaysWhyAFileCannotBeRead) {
+  const AllBytes all = read_all("/proc/self/mem");
+  EXPECT_EQ(all.status, ByteStream::Status::kError);
+  EXPECT_THAT(all.error, HasSubstr("/proc/self/mem: cannot be read: Input/output error"));
 }
 
 TEST(ByteStream, SaysWhatCannotBeOpened) {

@@ -338,5 +338,45 @@ TEST(CsvReader, ReadsTheMeasuredRigRecords) {
   EXPECT_EQ(rows[3], 1.43e-05);
 }
 
+Table times(const std::vector<double>& times_s, bool skip) {
+  std::string text = "time_s\n";
+  for (const double time_s : times_s) text += fmt::format("{}\n", time_s);
+  RowFileConfig config;
+  config.required = {"time_s"};
+  config.skip_bad_lines = skip;
+  return read_all(config, text);
+}
+
+TEST(CsvReader, ARecordIsShorterThanTenYears) {
+  EXPECT_EQ(times({5.0, 3.19999e8}, false).rows.size(), 2U);
+  EXPECT_THAT(times({5.0, 3.2e8 + 5.0}, false).error, HasSubstr("expected a time after 5"));
+  EXPECT_THAT(times({5.0, 5.0}, false).error, HasSubstr("found time_s = 5, expected a time after"));
+}
+
+// Where bad lines are skipped a time that is a minute ahead may be one: 16 of them wait for a 17th.
+TEST(CsvReader, APauseIsNotABadTime) {
+  const auto after = [](double gap_s, int rows) {
+    std::vector<double> all{0.0, 1.0};
+    for (int i = 0; i < rows; ++i) all.push_back(1.0 + gap_s + i);
+    return times(all, true);
+  };
+  EXPECT_EQ(after(59.9, 1).rows.size(), 3U);
+  EXPECT_EQ(after(60.0, 1).rows.size(), 2U);
+  EXPECT_EQ(after(60.0, 1).health.malformed, 1U);
+  EXPECT_EQ(after(1000.0, 16).rows.size(), 2U);
+  EXPECT_EQ(after(1000.0, 16).health.malformed, 16U);
+  EXPECT_EQ(after(1000.0, 17).rows.size(), 3U);
+  EXPECT_EQ(after(1000.0, 30).rows.size(), 16U);
+  std::vector<double> apart{0.0, 1.0};
+  for (int i = 1; i < 40; ++i) apart.push_back(1000.0 * i);
+  EXPECT_EQ(times(apart, true).rows.size(), 2U) << "far from one another they are no record";
+  std::vector<double> between{0.0};
+  for (int i = 1; i < 40; ++i) {
+    between.push_back(1e6 + i);
+    between.push_back(i);
+  }
+  EXPECT_EQ(times(between, true).rows.size(), 40U) << "the record goes on between them";
+}
+
 }  // namespace
 }  // namespace dampline::drivers

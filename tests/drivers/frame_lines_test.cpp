@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,46 @@ TEST(FrameLines, HoldsATimeThatGoesBackALittleAndRefusesMore) {
   EXPECT_EQ(held.health.reordered, 1U);
   EXPECT_EQ(held.frames.at(1).time_ns, 5'000'000'000);
   EXPECT_THAT(frames_of(head + " 2) 3999.0 Rx 0300 0\n").error, HasSubstr("does not go back"));
+}
+
+TEST(FrameLines, HoldsATimeThatGoesBackByLessThanASecond) {
+  const std::string head = ";$FILEVERSION=1.1\n 1) 5000.0 Rx 0300 0\n 2) 5000.0 Rx 0300 0\n";
+  EXPECT_EQ(frames_of(head).health.reordered, 0U);
+  const FileFrames held = frames_of(head + " 3) 4000.001 Rx 0300 0\n 4) 4000.001 Rx 0300 0\n");
+  EXPECT_EQ(held.health.reordered, 2U);
+  ASSERT_EQ(held.frames.size(), 4U) << held.error;
+  EXPECT_EQ(held.frames[3].time_ns, 5'000'000'000);
+  EXPECT_THAT(frames_of(head + " 3) 4000.0 Rx 0300 0\n").error, HasSubstr("does not go back"));
+}
+
+TEST(FrameLines, TimesSinceTheLineBeforeStopAtTheEndOfTheClock) {
+  const FileFrames out = frames_of(
+      "base hex timestamps relative\n 9000000000.5 1 1 Rx d 0\n 9000000000.5 1 1 Rx d 0\n"
+      " 0.5 1 1 Rx d 0\n");
+  ASSERT_EQ(out.frames.size(), 3U) << out.error;
+  EXPECT_EQ(out.frames[0].time_ns, 9'000'000'000'500'000'000);
+  EXPECT_EQ(out.frames[1].time_ns, std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(out.frames[2].time_ns, std::numeric_limits<std::int64_t>::max());
+}
+
+TEST(FrameLines, GivesEachFrameItsInterfaceOrOnlyThoseThatWereAskedFor) {
+  const std::string text =
+      ";$FILEVERSION=1.2\n 1) 1.0 3 Rx 0301 0\n 2) 2.0 7 Rx 0302 0\n 3) 3.0 3 Rx 0303 0\n";
+  const FileFrames all = frames_of(text);
+  EXPECT_THAT(all.interfaces, testing::ElementsAre("can3", "can7"));
+  ASSERT_EQ(all.frames.size(), 3U) << all.error;
+  for (const auto& [frame, interface] : {std::pair{0U, 0}, {1U, 1}, {2U, 0}})
+    EXPECT_EQ(all.frames[frame].interface_index, interface) << frame;
+  EXPECT_EQ(all.health.ignored, 1U) << "the line of the version";
+  const TemporaryFile file{text};
+  const FileFrames some =
+      frames_of(open_frames({.path = file.path(), .interfaces = {"can7", "can9"}}));
+  ASSERT_EQ(some.frames.size(), 1U) << some.error;
+  EXPECT_EQ(some.frames[0].id, 0x302U);
+  EXPECT_EQ(some.health.ignored, 3U);
+  EXPECT_EQ(some.health.frames, 1U);
+  const FileFrames none = frames_of(open_frames({.path = file.path(), .interfaces = {"can9"}}));
+  EXPECT_EQ(none.reason, Errc::kEndOfStream) << "they are there, but nobody asks for them";
 }
 
 TEST(FrameLines, ALastLineWithoutItsEndIsCutOff) {
