@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <array>
 #include <cstring>
@@ -164,8 +165,9 @@ TEST(BlfObject, IsBadWhereItIsTooShortForItsType) {
        {std::pair{1U, can_message(1)}, std::pair{100U, fd_message(1, 12, 1)},
         std::pair{101U, fd_message_64(1, 12, 0x1000)}, std::pair{73U, error}}) {
     EXPECT_EQ(read_object(bytes_of({type, body})).kind, BlfKind::kFrame) << type;
-    EXPECT_EQ(read_object(bytes_of({type, body.substr(0, body.size() - 1)})).kind, BlfKind::kBad)
-        << type;
+    for (std::size_t length = 0; length < body.size(); ++length)
+      EXPECT_EQ(read_object(bytes_of({type, body.substr(0, length)})).kind, BlfKind::kBad)
+          << type << " of " << length;
     EXPECT_EQ(read_object(bytes_of({type, ""}).substr(0, 31)).kind, BlfKind::kBad) << "its header";
     EXPECT_EQ(read_object(bytes_of({type, body, 0, 2, 3})).kind, BlfKind::kOther)
         << "another version";
@@ -361,6 +363,53 @@ TEST(BlfFile, OfAnUnknownCompressionIsDamaged) {
   const FileFrames skipped = blf_file(file, {}, true);
   EXPECT_EQ(skipped.frames.size(), 1U);
   EXPECT_EQ(skipped.health.malformed, 1U);
+}
+
+/// With zlib's data, and some bytes behind them.
+std::string zlib_container(const std::string& content, const std::string& behind = "") {
+  uLongf size = ::compressBound(content.size());
+  std::string packed(size, '\0');
+  EXPECT_EQ(::compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+                       reinterpret_cast<const Bytef*>(content.data()), content.size()),
+            Z_OK);
+  packed.resize(size);
+  std::string container = plain_container(packed + behind);
+  put_number(container, 16, std::uint16_t{2});
+  put_number(container, 24, static_cast<std::uint32_t>(content.size()));
+  return container;
+}
+
+TEST(BlfFile, InflatesEachContainerByItself) {
+  std::string content;
+  for (std::uint64_t i = 0; i < 50; ++i) content += frame_at(1000 * i);
+  for (const std::string& behind : {std::string{}, std::string{"x"}, std::string(1000, 'x')}) {
+    const FileFrames out =
+        blf_file(blf_header() + zlib_container(content.substr(0, 1234), behind) +
+                 plain_container(content.substr(1234, 100)) + zlib_container(content.substr(1334)));
+    ASSERT_EQ(out.frames.size(), 50U) << out.error;
+    for (std::size_t i = 0; i < 50; ++i)
+      ASSERT_EQ(out.frames[i].time_ns % 1'000'000, static_cast<std::int64_t>(1000 * i));
+    EXPECT_EQ(out.health.malformed, 0U);
+    EXPECT_FALSE(out.health.truncated);
+  }
+}
+
+// The object that reaches into it is lost with it.
+TEST(BlfFile, GoesOnBehindADamagedContainer) {
+  std::string damaged = plain_container(std::string(100, 'x'));
+  put_number(damaged, 16, std::uint16_t{3});
+  const std::string large = bytes_of({65, std::string(300'000, 'x')});
+  for (const std::string& half : {frame_at(2).substr(0, 20), frame_at(2).substr(0, 47),
+                                  large.substr(0, 1000), large.substr(0, 200'000)}) {
+    const FileFrames out = blf_file(
+        blf_header() + plain_container(frame_at(1) + half) + damaged + plain_container(frame_at(3)),
+        {}, true);
+    ASSERT_EQ(out.frames.size(), 2U) << half.size() << out.error;
+    EXPECT_EQ(out.frames[1].time_ns % 1000, 3);
+    EXPECT_EQ(out.frames[1].data[7], 0x88);
+    EXPECT_EQ(out.health.malformed, 1U);
+    EXPECT_EQ(out.reason, Errc::kEndOfStream);
+  }
 }
 
 }  // namespace
