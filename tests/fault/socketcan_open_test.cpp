@@ -67,6 +67,11 @@ TEST_F(SocketCanOpen, SaysThatAKernelHasNoCan) {
   EXPECT_THAT(open_error(), HasSubstr("can0: this kernel has no CAN sockets"));
 }
 
+TEST_F(SocketCanOpen, SaysThatThereIsNoSocketToBeHad) {
+  const ArmedFault fault{{.call = Call::kSocket, .error = EMFILE}};
+  EXPECT_THAT(open_error(), HasSubstr("can0: no CAN socket to be had: Too many open files"));
+}
+
 TEST_F(SocketCanOpen, DoesWithoutCanFdAndWithoutAForcedBuffer) {
   kernel_.forget_option(SOL_CAN_RAW, CAN_RAW_FD_FRAMES);
   kernel_.forget_option(SOL_SOCKET, SO_RCVBUFFORCE);

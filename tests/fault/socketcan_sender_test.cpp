@@ -75,7 +75,11 @@ TEST_F(CanSending, WaitsForAFullQueueButNotForEver) {
 
 TEST_F(CanSending, CountsFramesWhileTheInterfaceIsDown) {
   kernel_.down("can0");
-  EXPECT_EQ(sender_->send(numbered(5)), 0U);
+  {
+    const ArmedFault counter{{.call = Call::kSendmmsg, .nth = kNever}};
+    EXPECT_EQ(sender_->send(numbered(5)), 0U);
+    EXPECT_EQ(counter.calls(), 2U) << "the first may tell what is past";
+  }
   EXPECT_EQ(sender_->last_errno(), ENETDOWN);
   kernel_.up("can0");
   EXPECT_EQ(sender_->send(numbered(5)), 5U);

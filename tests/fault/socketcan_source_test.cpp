@@ -101,8 +101,9 @@ TEST_F(SocketCanSource, StatesWhichClockStampedAFrame) {
   kernel_.receive(frame, CAN_MTU, {clock_.realtime_ns(), 1'500'000});
   kernel_.receive(frame, CANFD_MTU, {clock_.realtime_ns(), 0});
   kernel_.receive(frame, CAN_MTU, {0, 0});
+  kernel_.receive(frame, CAN_MTU, {0, 0});
   const auto frames = read_all();
-  ASSERT_EQ(frames.size(), 4U);
+  ASSERT_EQ(frames.size(), 5U);
   EXPECT_EQ(frames[0].time_source, TimeSource::kHardware);
   EXPECT_NEAR(static_cast<double>(frames[1].time_ns - frames[0].time_ns), 500e3, 1000.0);
   EXPECT_EQ(frames[2].time_source, TimeSource::kSoftware);
