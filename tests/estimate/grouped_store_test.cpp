@@ -74,5 +74,25 @@ TEST(GroupedStore, WeighedRowsLeaveUnitResiduals) {
   });
 }
 
+TEST(GroupedStore, ClearForgetsAllThatWasMerged) {
+  const auto rows = random_rows(100, 20, 5);
+  GroupedStore store{MemoryConfig{}};
+  feed(store, rows, 0);
+  store.clear();
+  EXPECT_EQ(store.blocks_per_entry(), 1U) << "as in a new run";
+  store.summed_up([](const ScaleFactors& total, GroupedList entries) {
+    EXPECT_EQ(total.blocks, 0U);
+    EXPECT_EQ(entries.size(), 0U);
+    for (std::size_t s = 0; s < kScales; ++s) EXPECT_EQ(total.rows[s], 0.0);
+  });
+  feed(store, rows, kSteps);
+  store.summed_up([&](const ScaleFactors& total, GroupedList /*entries*/) {
+    EXPECT_EQ(total.blocks, 100U);
+    EXPECT_LT(relative_difference(total.factor[1].gram(),
+                                  batch_gram(rows, 1, [](std::int64_t) { return 1.0; })),
+              1e-12);
+  });
+}
+
 }  // namespace
 }  // namespace dampline

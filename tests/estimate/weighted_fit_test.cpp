@@ -64,7 +64,7 @@ TEST(MappedColumns, AreTheProductWithTheWholeMap) {
   data.add(factors, 40);
   ColumnMap<3> map = ColumnMap<3>::Zero();
   map(4, 0) = 1.0;
-  map(5, 0) = 0.25;
+  map(5, 0) = 0.5;
   map(3, 0) = -0.25;
   map(kStiffnessColumn, 1) = 2.0;
   map(kTargetColumn, 3) = 1.0;  // the third unknown has no column
@@ -113,6 +113,75 @@ TEST(WeightedFit, BeatsOneScaleAloneAndStatesItsScatter) {
   }
   EXPECT_LT(all, 0.4 * one);
   EXPECT_NEAR(stated / all, 1.0, 0.35);
+}
+
+/// Twenty entries whose target is in another unit.
+std::vector<ScaleFactors> entries_in(double unit) {
+  Synthetic data{9};
+  std::vector<ScaleFactors> entries(20);
+  for (ScaleFactors& entry : entries) {
+    for (std::size_t s = 0; s < kScales; ++s) {
+      for (int i = 0; i < 30; ++i) {
+        GalerkinRow row = data.row(kSigma[s] * data.normal());
+        row[kTargetColumn] *= unit;
+        entry.factor[s].absorb(row);
+        entry.rows[s] += 1.0;
+      }
+    }
+    entry.blocks = 1;
+  }
+  return entries;
+}
+
+struct FitOfEntries {
+  Fit fit;
+  Eigen::Matrix2d covariance;
+  double nmse;
+};
+FitOfEntries fit_of(const std::vector<ScaleFactors>& entries) {
+  ScaleFactors total;
+  std::vector<const ScaleFactors*> list;
+  for (const ScaleFactors& entry : entries) {
+    total.merge(entry);
+    list.push_back(&entry);
+  }
+  const auto map = force_and_stiffness();
+  const Fit fit = weighted_fit<kUnknowns>(total, map, kAllScales);
+  return {fit, score_covariance<kUnknowns>(fit, EntryList{list}, map),
+          held_out_nmse_of<kUnknowns, 5>(fit, EntryList{list}, map)};
+}
+
+// N or kN, m or mm: what is identified is the same.
+TEST(WeightedFit, KnowsNoUnits) {
+  const FitOfEntries in_one = fit_of(entries_in(1.0));
+  for (const double unit : {1e-3, 1e3}) {
+    const FitOfEntries out = fit_of(entries_in(unit));
+    ASSERT_TRUE(out.fit.ok);
+    EXPECT_LT((out.fit.theta / unit - in_one.fit.theta).norm(), 1e-9 * in_one.fit.theta.norm());
+    for (std::size_t s = 0; s < kScales; ++s)
+      EXPECT_NEAR(out.fit.weight[s] * unit * unit / in_one.fit.weight[s], 1.0, 1e-9) << s;
+    EXPECT_NEAR(out.fit.weighted_residual / in_one.fit.weighted_residual, 1.0, 1e-9);
+    EXPECT_NEAR(out.fit.weighted_total / in_one.fit.weighted_total, 1.0, 1e-9);
+    EXPECT_LT((out.covariance / (unit * unit) - in_one.covariance).norm(),
+              1e-9 * in_one.covariance.norm());
+    EXPECT_NEAR(out.nmse / in_one.nmse, 1.0, 1e-9);
+  }
+}
+
+TEST(WeightedFit, VisitsTheRowsOfScalesAndGroupsThatHaveAWeight) {
+  const MappedColumns<kUnknowns> columns{force_and_stiffness()};
+  const auto visits = [&](const std::array<double, kScales>& weight, const auto& entry) {
+    Fit fit;
+    fit.weight = weight;
+    int count = 0;
+    for_each_row(fit, entry, columns, [&](double /*weight*/, const auto& /*row*/) { ++count; });
+    return count / kRowColumns;
+  };
+  EXPECT_EQ(visits({1e-6, 0.0, 1e-9, 0.0, 1e6}, ScaleFactors{}), 3);
+  EXPECT_EQ(visits({0.0, 0.0, 0.0, 0.0, 0.0}, ScaleFactors{}), 0);
+  EXPECT_EQ(visits({1e-6, 1.0, 1.0, 1.0, 1e-6}, GroupedFactors{}), 2);
+  EXPECT_EQ(visits({1e-6, 1.0, 1.0, 1.0, 0.0}, GroupedFactors{}), 1);
+  EXPECT_EQ(visits({0.0, 1.0, 1.0, 1.0, 1e-6}, GroupedFactors{}), 1);
 }
 
 TEST(WeightedFit, LeavesOutMaskedScalesAndScalesWithFewRows) {
@@ -372,6 +441,21 @@ TEST(LawModel, ChangesByTheNeighboursOfItsWidth) {
     EXPECT_EQ(column_at(i, Model::kStiffness, kStiffnessColumn), 1.0);
     EXPECT_EQ(column_at(i, Model::kViscous, kViscousColumn), 1.0);
     EXPECT_EQ(column_at(i, Model::kUnknowns, kTargetColumn), 1.0);
+  }
+}
+
+// Each unknown has the column of its name and no other, the target too.
+TEST(LawModel, OfOneWidthHasItsColumns) {
+  using Model = LawModel<true>;
+  for (std::size_t i = 0; i < kLawWidths; ++i) {
+    const auto map = Model::fixed_width(i);
+    auto expected = map;
+    expected.setZero();
+    expected(static_cast<int>(i), Model::kCoulomb) = 1.0;
+    expected(kStiffnessColumn, Model::kStiffness) = 1.0;
+    expected(kViscousColumn, Model::kViscous) = 1.0;
+    expected(kTargetColumn, Model::kUnknowns - 1) = 1.0;
+    EXPECT_EQ(map, expected) << i;
   }
 }
 
