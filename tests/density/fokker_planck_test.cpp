@@ -208,6 +208,7 @@ TEST(FokkerPlanck, TwoHalvesMergeToTheWhole) {
   EXPECT_NEAR(a.known_input.level_n.value, b.known_input.level_n.value, 1e-6);
   // The periodograms that the cut goes through are lost.
   EXPECT_NEAR(a.weak.level_n.value / b.weak.level_n.value, 1.0, 0.01);
+  EXPECT_NEAR(a.weak.verdict[Reason::kShortRecord].size, 200.0, 1e-6) << "s, and all of them count";
   FokkerPlanckConfig other = config;
   other.velocity_mps.high = 0.2;
   const auto refused = first.merge(FokkerPlanck{other});

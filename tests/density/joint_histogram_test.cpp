@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim_hw/noise.hpp"
 
@@ -87,6 +88,12 @@ TEST(JointHistogram, LearnsBothRanges) {
                .y = {.low = learner.y_axis().low(), .high = learner.y_axis().high()}}};
   fill(known, 0.3, 6'000, 9);
   EXPECT_GT(learner.x_axis().high(), 3.0);
+  for (const auto& [x, y] : {std::pair{1e3, 0.0}, {0.0, 1e3}}) {
+    const double outside = learner.share_outside();
+    learner.update(x, y);
+    known.update(x, y);
+    EXPECT_GT(learner.share_outside(), outside) << "after the warm-up a range is fixed";
+  }
   for (std::size_t i = 0; i < 16; ++i) {
     for (std::size_t j = 0; j < 32; ++j) EXPECT_EQ(learner.share(i, j), known.share(i, j));
   }
