@@ -6,6 +6,7 @@
 
 #include "dampline/damping/estimator.hpp"
 #include "dampline/damping/summary.hpp"
+#include "dampline/estimate/velocity_error.hpp"
 #include "sim_hw/simulation.hpp"
 
 namespace dampline {
@@ -88,6 +89,28 @@ TEST(SummaryRules, DeviationsAreLowerBoundsWhereTheTruckSticksForAQuarter) {
   EXPECT_FALSE(with_share(0.25).std_with_viscous_is_lower_bound);
   EXPECT_TRUE(with_share(0.2501).std_is_lower_bound);
   EXPECT_TRUE(with_share(0.2501).std_with_viscous_is_lower_bound);
+}
+
+// What slow sampling loses is in both: of the level a share, of the stiffness a deviation.
+TEST(SummaryRules, TheLevelAndTheStiffnessKnowTheRate) {
+  const auto at_rate = [](double rate_hz) {
+    const auto statistics = std::make_unique<Statistics>(of_a_ride());
+    statistics->header.sample_rate_hz = rate_hz;
+    return summarise(*statistics, {.moving_mass_kg = 1000.0});
+  };
+  const Snapshot unknown = at_rate(0.0);
+  for (const double rate_hz : {150.0, 200.0, 400.0}) {
+    const Snapshot known = at_rate(rate_hz);
+    const VelocityError error{rate_hz, known.velocity_rms_mps};
+    const double width_mps = known.law_width_mps.value;
+    const Estimate level = error.coulomb(unknown.coulomb_n, width_mps);
+    const Estimate stiffness = error.stiffness(unknown.stiffness_npm, width_mps);
+    EXPECT_NEAR(known.coulomb_n.value / level.value, 1.0, 1e-12) << rate_hz;
+    EXPECT_NEAR(known.coulomb_n.std / level.std, 1.0, 1e-12) << rate_hz;
+    EXPECT_NEAR(known.stiffness_npm.value / stiffness.value, 1.0, 1e-12) << rate_hz;
+    EXPECT_NEAR(known.stiffness_npm.std / stiffness.std, 1.0, 1e-12) << rate_hz;
+  }
+  EXPECT_GT(at_rate(150.0).stiffness_npm.std, 1.1 * unknown.stiffness_npm.std);
 }
 
 // 0.1, 0.3 and 0.25 %: errors that the scatter of the blocks does not show.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <numbers>
 
 #include "tests/estimator/record.hpp"
 
@@ -75,6 +76,25 @@ TEST(Estimator, TellsStandstillFromMotion) {
   }
   EXPECT_GT(still_at_rest, 29 * 300);
   EXPECT_EQ(still_under_way, 0);
+}
+
+// As when somebody works on a wagon that stands: no wheelset feels a rail.
+TEST(Estimator, AFrameThatSwingsOnQuietWheelsetsIsStill) {
+  const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
+  int motions = 0;
+  for (std::int64_t tick = 0; tick < 20 * 300; ++tick) {
+    Sample sample;
+    sample.tick = tick;
+    const double turn = 2.0 * std::numbers::pi * 3.0 * static_cast<double>(tick) / 300.0;
+    const double noise = 1e-3 * static_cast<double>(tick * 7919 % 101);
+    sample.accel_mps2 = {9.81 + 2.0 * std::sin(turn), 9.81 + noise, 9.81 - 0.5 * noise};
+    const UpdateResult result = identifier->update(sample);
+    if (!result.has_motion || result.motion.tick < 4 * 300) continue;
+    ++motions;
+    EXPECT_GT(std::abs(result.motion.velocity_mps), 0.0);
+    ASSERT_TRUE(result.motion.still) << tick;
+  }
+  EXPECT_GT(motions, 5 * 300);
 }
 
 TEST(Estimator, KnowsARowsLatency) {

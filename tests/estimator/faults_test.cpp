@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <tuple>
 
 #include "tests/estimator/record.hpp"
 
@@ -55,6 +57,48 @@ TEST(EstimatorFaults, AGapOverABoundaryExcludesBothBlocks) {
   EXPECT_EQ(run.snapshot.counts.blocks_excluded, 2U);
   EXPECT_EQ(status_at(run, kBadBlock), BlockStatus::kExcludedGap);
   EXPECT_EQ(status_at(run, kBadBlock + 600), BlockStatus::kExcludedGap);
+}
+
+// A block is excluded where one of its own samples is missing, and not where none is.
+TEST(EstimatorFaults, AGapExcludesTheBlocksOfItsFirstAndOfItsLastSample) {
+  for (const auto& [first, end, before, behind] :
+       {std::tuple{15599, 15601, true, true}, std::tuple{15590, 15600, true, false},
+        std::tuple{15599, 15600, true, false}, std::tuple{15600, 15610, false, true}}) {
+    auto record = laden_record();
+    record.erase(record.begin() + first, record.begin() + end);
+    const Identified run = identify(record);
+    EXPECT_EQ(status_at(run, kBadBlock) == BlockStatus::kExcludedGap, before) << first;
+    EXPECT_EQ(status_at(run, kBadBlock + 600) == BlockStatus::kExcludedGap, behind) << end;
+  }
+}
+
+/// Statistics of a quarter of a minute that is bad up to `from`, and once more at `bad`.
+std::unique_ptr<Statistics> broken_at(std::size_t from, std::size_t bad) {
+  const auto estimator = std::make_unique<Estimator>(EstimatorConfig{.velocity_corner_hz = 1.0});
+  for (std::size_t i = 0; i < 4500; ++i) {
+    Sample sample = laden_record()[i];
+    if (i < from || i == bad) sample.saturated = 1;
+    estimator->update(sample);
+  }
+  estimator->finish();
+  auto out = std::make_unique<Statistics>();
+  estimator->export_statistics(*out);
+  return out;
+}
+
+// A stretch that is too short for a row leaves nothing behind for the next one.
+TEST(EstimatorFaults, AStretchWithoutARowChangesNothing) {
+  constexpr std::size_t kBad = 2000;
+  const auto without = broken_at(kBad + 1, kBad);
+  bool any_motion = false;
+  for (std::size_t length = 100; length < kBad; length += 25) {
+    const auto with = broken_at(kBad - length, kBad);
+    if (with->header.counts.rows != without->header.counts.rows) break;
+    any_motion = any_motion || with->header.velocity.moving > without->header.velocity.moving;
+    for (std::size_t s = 0; s < kScales; ++s)
+      ASSERT_EQ(with->total.factor[s].packed(), without->total.factor[s].packed()) << length;
+  }
+  EXPECT_TRUE(any_motion) << "long enough for velocities";
 }
 
 TEST(EstimatorFaults, SaturationExcludesItsBlock) {
