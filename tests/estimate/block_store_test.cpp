@@ -167,6 +167,16 @@ TEST(BlockStore, FinishGivesTheSameBitsAsStepping) {
   for (std::size_t s = 0; s < kScales; ++s) EXPECT_EQ(a->factor[s].packed(), b->factor[s].packed());
 }
 
+// Rows are gathered by eights; what is left of them, one to seven, counts as much.
+TEST(BlockStore, TheTotalEqualsTheBatchForAnyNumberOfRows) {
+  for (int count = 1; count <= 17; ++count) {
+    const auto rows = random_rows(5, count, 12);
+    const auto store = store_with({});
+    feed(*store, rows, kMany);
+    EXPECT_LT(worst_difference(*store, rows, [](std::int64_t) { return 1.0; }), 1e-12) << count;
+  }
+}
+
 /// A closed block is merged by and by: after one step its rows are still open. What is empty takes
 /// a block scale by scale.
 TEST(BlockStore, SpreadsTheWorkOverManySteps) {

@@ -137,6 +137,20 @@ Factor factor_of_panels(const Eigen::MatrixXd& ab) {
   return out;
 }
 
+TEST(Information, APanelHoldsItsRows) {
+  const Eigen::MatrixXd ab = random_matrix(5, kUnknowns + 1, 19);
+  Factor::Panel<5> panel;
+  for (std::size_t m : {0U, 1U, 2U, 3U, 4U}) panel.set(m, ab.row(static_cast<int>(m)).transpose());
+  for (std::size_t m : {0U, 1U, 2U, 3U, 4U})
+    EXPECT_EQ(panel.row(m), ab.row(static_cast<int>(m)).transpose()) << m;
+  panel.scale(3, 2.0);
+  panel.clear(1);
+  EXPECT_EQ(panel.row(3), 2.0 * ab.row(3).transpose());
+  EXPECT_EQ(panel.row(1), Factor::Row::Zero());
+  EXPECT_EQ(panel.row(2), ab.row(2).transpose());
+  EXPECT_EQ(panel.row(4), ab.row(4).transpose());
+}
+
 TEST(Information, TakesPanelsAsWellAsRows) {
   Eigen::MatrixXd ab = random_matrix(60, kUnknowns + 1, 16);
   ab.col(1) = ab.col(0) + 1e-7 * ab.col(1);  // the normal equations would leave two digits
