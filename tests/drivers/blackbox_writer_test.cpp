@@ -239,6 +239,29 @@ TEST(BlackboxWriter, RemovesFilesByTheirAge) {
   EXPECT_EQ(read_box(folder.path()).numbers(), test::range(7, 3));
 }
 
+// A long file does not keep older ones until its end.
+TEST(BlackboxWriter, RemovesOldFilesWhileItWrites) {
+  const BoxFolder folder;
+  auto config = test::box_config(folder.path());
+  config.keep_ns = 600 * kSecondNs;
+  const auto writer = open_box(config);
+  writer->tick(0);
+  const auto write_at = [&](std::int64_t time_s) {
+    CanFrame frame = numbered_frame(0);
+    frame.time_ns = test::kStartNs + time_s * kSecondNs;
+    writer->write(frame);
+    writer->tick(time_s * kSecondNs);
+    return folder.files();
+  };
+  EXPECT_EQ(write_at(1), 1U);
+  writer->rotate();
+  EXPECT_EQ(write_at(2), 2U);
+  EXPECT_EQ(write_at(602), 2U) << "just as old as it may be";
+  EXPECT_EQ(write_at(604), 1U);
+  EXPECT_FALSE(std::filesystem::exists(folder.file(1)));
+  EXPECT_EQ(writer->health().files_removed, 1U);
+}
+
 TEST(BlackboxWriter, GoesOnInANewFileWithTheNextNumbers) {
   const BoxFolder folder;
   std::uint64_t sequence = 0;

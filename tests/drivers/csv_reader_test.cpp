@@ -338,6 +338,20 @@ TEST(CsvReader, ReadsTheMeasuredRigRecords) {
   EXPECT_EQ(rows[3], 1.43e-05);
 }
 
+TEST(CsvReader, AColumnMayBeAskedForByItsNumber) {
+  const auto column = [](const std::string& name) {
+    RowFileConfig config;
+    config.required = {"x"};
+    config.renamed = {{"x", name}};
+    return read_all(config, "a,b,c,d,e,f,g,h,i,j,k,12\n1,2,3,4,5,6,7,8,9,10,11,120\n");
+  };
+  for (const int number : {1, 9, 10, 11})
+    EXPECT_THAT(column(std::to_string(number)).rows, ElementsAre(ElementsAre(number)));
+  EXPECT_THAT(column("12").rows, ElementsAre(ElementsAre(120.0))) << "a name";
+  for (const char* none : {"0", "13", "A", "-1"})
+    EXPECT_THAT(column(none).error, HasSubstr("found no column")) << none;
+}
+
 Table times(const std::vector<double>& times_s, bool skip) {
   std::string text = "time_s\n";
   for (const double time_s : times_s) text += fmt::format("{}\n", time_s);
