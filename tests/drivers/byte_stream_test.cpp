@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -305,6 +306,17 @@ TEST(ByteStream, TellsTheShareOfAFileThatWasRead) {
   EXPECT_FALSE(ByteStream::open(TemporaryFile{""}.path()).value().share_read());
   const OpenPipe pipe;
   EXPECT_FALSE(ByteStream::open(pipe.path()).value().share_read());
+}
+
+TEST(ByteStream, TheEndIsTheEndWhateverFailedBefore) {
+  const TemporaryFile file{"abc"};
+  auto stream = ByteStream::open(file.path());
+  std::array<char, 100> part{};
+  EXPECT_EQ(stream.value().read(part).count, 3U);
+  for (const int error : {EAGAIN, EINTR}) {
+    errno = error;  // of another call
+    EXPECT_EQ(stream.value().read(part).status, ByteStream::Status::kEnd);
+  }
 }
 
 // The first page of a program's memory is a file that opens, and cannot be read.

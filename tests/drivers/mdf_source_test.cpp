@@ -165,6 +165,10 @@ TEST(MdfSource, RefusesRecordIdentifiersOfOtherLengths) {
     EXPECT_THAT(frames_of(bytes).error,
                 HasSubstr("identifiers of " + std::to_string(id_bytes) + " bytes"));
   }
+  for (const int id_bytes : {1, 2, 4, 8}) {
+    bytes[bytes.find("##DG") + kIdBytes] = static_cast<char>(id_bytes);
+    EXPECT_THAT(frames_of(bytes).error, testing::Not(HasSubstr("identifiers of"))) << id_bytes;
+  }
   bytes[bytes.find("##DG") + kIdBytes] = 0;
   EXPECT_THAT(frames_of(bytes).error, HasSubstr("without identifiers, expected one"));
 }

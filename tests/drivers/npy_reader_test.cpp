@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -177,6 +178,18 @@ TEST(NpyReader, CutOffItGivesTheWholeRows) {
         << size;
 }
 
+TEST(NpyReader, TellsTheShareThatWasRead) {
+  const TemporaryFile file{array_of("'<f8'", "(4,)", doubles({1, 2, 3, 4})), ".npy"};
+  const auto rows = open_rows({.path = file.path(), .required = {"1"}});
+  std::array<double, 1> row{};
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    ASSERT_TRUE(rows.value()->read(row).ok());
+    EXPECT_EQ(rows.value()->share_read(), share);
+  }
+  const TemporaryFile none{array_of("'<f8'", "(0,)", ""), ".npy"};
+  EXPECT_EQ(open_rows({.path = none.path(), .required = {"1"}}).value()->share_read(), 1.0);
+}
+
 TEST(NpyReader, ATimeThatGoesBackIsNamedByItsRow) {
   const ReadRows out = read_rows(array_of("[('t', '<f8')]", "(3,)", doubles({1, 2, 2})));
   EXPECT_EQ(out.rows.size(), 2U);
@@ -274,6 +287,18 @@ TEST(NpyReader, SaysWhatIsWrongWithAnArchive) {
   std::string moved = whole;
   moved[whole.find("PK\x01\x02") + 42] = 3;
   EXPECT_THAT(read_rows(moved).error, HasSubstr("found no array where its directory says"));
+  Archive wide;
+  wide.add("t.npy", array_of("'<f8'", "(3,)", doubles({0, 1, 2})), false, true);
+  EXPECT_EQ(read_rows(wide.bytes()).rows.size(), 3U);
+  for (std::uint32_t missing = 1; missing < 40; ++missing) {
+    std::string cut = wide.bytes();
+    const std::size_t end = cut.rfind("PK\x05\x06");
+    std::uint32_t size = 0;
+    std::memcpy(&size, &cut[end + 12], sizeof size);
+    size -= missing;
+    std::memcpy(&cut[end + 12], &size, sizeof size);
+    EXPECT_THAT(read_rows(cut).error, HasSubstr("holds no array of numbers")) << missing;
+  }
   Archive empty;
   empty.add("a.npy", array_of("'<U8'", "(1,)", std::string(32, '\0')));
   EXPECT_THAT(read_rows(empty.bytes()).error, HasSubstr("holds no array of numbers"));
