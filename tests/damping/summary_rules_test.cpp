@@ -155,6 +155,14 @@ TEST(SummaryRules, NeedsFourEntriesAndFiveForHeldOutErrors) {
   EXPECT_TRUE(std::isfinite(with_entries(5).held_out_nmse_with_viscous));
 }
 
+TEST(SummaryRules, ALevelAloneNeedsFourEntriesToo) {
+  const auto statistics = std::make_unique<Statistics>(of_a_ride());
+  for (const std::uint32_t count : {0U, 3U, 4U, 5U}) {
+    statistics->header.entry_count = count;
+    EXPECT_EQ(summarise_level(*statistics, {.moving_mass_kg = 1.0}).valid, count >= 4) << count;
+  }
+}
+
 TEST(SummaryRules, ExcitationIsTheShareOfBlocksThatMoved) {
   const auto statistics = std::make_unique<Statistics>(of_a_ride());
   statistics->header.counts.blocks = 10;
