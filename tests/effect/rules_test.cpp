@@ -84,6 +84,27 @@ TEST(Rules, ASecondLateChannelMustGainMoreThanTheFirstLeaves) {
   EXPECT_EQ(later(Effect::kTimeSkew, step(Effect::kTimeSkew, 0.07, 10.0, 25.0)), Verdict::kYes);
 }
 
+TEST(Rules, TwoChannelsMayBeLateBesideTheThird) {
+  Candidate late;
+  late.effect = Effect::kTimeSkew;
+  late.form = kFrameForm;
+  Candidate other = late;
+  other.form = kWheelset2Form;
+  const Model one = Model{}.with(late);
+  EXPECT_FALSE(has_room(one, late, true)) << "the same once more";
+  EXPECT_TRUE(has_room(one, other, true));
+  EXPECT_FALSE(has_room(one, other, false));
+  Candidate third = late;
+  third.form = kWheelset1Form;
+  EXPECT_FALSE(has_room(one.with(other), third, true)) << "all late are none";
+  Candidate gain = late;
+  gain.effect = Effect::kGainError;
+  EXPECT_TRUE(has_room(one.with(other), gain, true));
+  gain.form = kWheelset1Form;
+  late.effect = Effect::kGainError;
+  EXPECT_FALSE(has_room(Model{}.with(late), gain, true)) << "of one channel";
+}
+
 TEST(Rules, ALateChannelLooksLikeAWrongGainOfTheSame) {
   Step gain = step(Effect::kGainError, 0.09, 10.0, 25.0);
   gain.chosen.form = kFrameForm;

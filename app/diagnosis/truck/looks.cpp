@@ -148,7 +148,7 @@ class CloserLook {
     effect::ExplainerConfig wanted = explainer_config(config_, known);
     wanted.known = &known.explanation;
     effect::Explanation out = explainer_.explain(pass.diagnosis(), wanted);
-    if (late) left = lateness_left(pass.diagnosis(), surrogate.get(), out);
+    if (late_channels(out).count > 0) left = lateness_left(pass.diagnosis(), surrogate.get(), out);
     return out;
   }
 

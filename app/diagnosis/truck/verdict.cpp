@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/diagnosis/truck/verdict.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

@@ -28,31 +28,6 @@ int first_term(const Model& model, std::size_t i) noexcept {
   return term;
 }
 
-/// Whether a candidate has its place taken. Two channels may be late beside the third.
-bool contains(const Model& model, const Candidate& candidate, bool two_late) noexcept {
-  std::size_t same = 0;
-  for (std::size_t i = 0; i < model.count; ++i) {
-    if (model.effect[i].effect != candidate.effect) continue;
-    if (candidate.effect != Effect::kTimeSkew || model.effect[i].form == candidate.form)
-      return true;
-    ++same;
-  }
-  return same >= (two_late ? 2U : 1U);
-}
-
-/// Signs that physics asks for: of the effect's first coefficient, and friction that does not
-/// drive.
-bool plausible(const Candidate& candidate, const ModelFit& fit, int term) noexcept {
-  const double theta = fit.theta[term];
-  if (candidate.sign * theta < 0.0) return false;
-  if (is_pair(candidate) && candidate.sign * fit.theta[term + 1] < 0.0) return false;
-  if (candidate.effect == Effect::kAsymmetricViscous) {
-    // c+ and c- : theta_v +- theta_|v|
-    return fit.theta[term + 1] > std::abs(theta);
-  }
-  return true;
-}
-
 /// Impacts that no sensor measured are no column: the rows that they reach are known by their size.
 void add_impulses(const ImpulseMeter& meter, const ModelFit& now, Explanation& out) noexcept {
   if (meter.share() < kImpulseShare || meter.events() < kFewestImpulses) return;
@@ -109,10 +84,10 @@ void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& 
   list_candidates(base_of(now), grids_, candidates_);
   for (std::size_t i = 0; i < candidates_.count; ++i) {
     const Candidate& candidate = candidates_.item[i];
-    if (contains(model, candidate, two_late_)) continue;
+    if (!has_room(model, candidate, two_late_)) continue;
     if (!allowed_[static_cast<std::size_t>(candidate.effect)]) continue;
     const ModelFit fit = fitter_.fit(model.with(candidate));
-    if (!fit.ok || !plausible(candidate, fit, now.terms)) continue;
+    if (!fit.ok || !is_plausible(candidate, fit, now.terms)) continue;
     const bool tiny = fit.held_out_nmse > (1.0 - kSkewGain) * now.held_out_nmse;
     if (candidate.effect == Effect::kTimeSkew && tiny) continue;
     Best& b = best[static_cast<std::size_t>(candidate.effect)];
@@ -200,7 +175,7 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
       if (!is_of_grid(candidates_.item[c], before)) continue;
       place = candidates_.item[c];
       const ModelFit fit = fitter_.fit(out.model);
-      if (!fit.ok || !plausible(place, fit, term)) continue;
+      if (!fit.ok || !is_plausible(place, fit, term)) continue;
       const double judged = handicap(place) * fit.held_out_nmse;
       if (judged < kReadjusted * best.judged) best = {true, place, fit.held_out_nmse, judged};
     }

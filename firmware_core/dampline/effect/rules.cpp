@@ -156,6 +156,28 @@ double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {
   return std::abs(fit.theta[i]) / std::sqrt(std::max(fit.covariance(i, i), 1e-300));
 }
 
+bool has_room(const Model& model, const Candidate& candidate, bool two_late) noexcept {
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    const Candidate& known = model.effect[i];
+    if (known.effect != candidate.effect) continue;
+    if (candidate.effect != Effect::kTimeSkew || known.form == candidate.form) return false;
+    ++same;
+  }
+  return same < (two_late ? 2U : 1U);
+}
+
+bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noexcept {
+  const double theta = fit.theta[term];
+  if (candidate.sign * theta < 0.0) return false;
+  if (is_pair(candidate) && candidate.sign * fit.theta[term + 1] < 0.0) return false;
+  if (candidate.effect == Effect::kAsymmetricViscous) {
+    // c+ and c- : theta_v +- theta_|v|
+    return fit.theta[term + 1] > std::abs(theta);
+  }
+  return true;
+}
+
 Verdict judge_step(const Model& model, bool first, bool best, const Step& step) noexcept {
   if (first) {
     const bool joins = passes_first(step) || is_faint_friction(step) || is_faint(step);

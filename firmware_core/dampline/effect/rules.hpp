@@ -11,6 +11,13 @@ namespace dampline::effect {
 /// The first coefficient that a model has beyond another's, over its deviation.
 [[nodiscard]] double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept;
 
+/// Whether a model may take a candidate: each effect once, but two channels may be late beside the
+/// third where `two_late`.
+[[nodiscard]] bool has_room(const Model& model, const Candidate& candidate, bool two_late) noexcept;
+/// Signs that physics asks for: of the effect's first coefficient, the `term`-th of the fit, and
+/// friction that does not drive.
+[[nodiscard]] bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noexcept;
+
 /// What becomes of a candidate: it joins the model, the next best is looked at, or nothing does.
 enum class Verdict : std::uint8_t { kYes, kNo, kStop };
 
