@@ -57,7 +57,8 @@ int let_go(dl_phdr_info* object, std::size_t /*size*/, void* /*nothing*/) noexce
     if (part.p_type != PT_LOAD || (part.p_flags & PF_W) != 0) continue;
     const std::uintptr_t begin = (object->dlpi_addr + part.p_vaddr) / page * page;
     const std::size_t bytes = object->dlpi_addr + part.p_vaddr + part.p_memsz - begin;
-    void* const address = reinterpret_cast<void*>(begin);  // NOLINT(*-reinterpret-cast)
+    void* const address =
+        reinterpret_cast<void*>(begin);  // NOLINT(*-reinterpret-cast,*-int-to-ptr)
     if (::munlock(address, bytes) == 0) ::madvise(address, bytes, MADV_DONTNEED);
   }
   return 0;

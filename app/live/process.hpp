@@ -20,8 +20,8 @@ struct Realtime {
   [[nodiscard]] bool whole() const noexcept { return memory_locked && scheduled; }
 };
 
-/// Keeps the memory of the whole process, present and future, from being paged out, but for the code
-/// of libraries that the acquisition does not call. Call after everything large was allocated.
+/// Keeps the memory of the whole process, present and future, from being paged out, but for the
+/// code of libraries that the acquisition does not call. Call after everything large was allocated.
 void lock_memory(Realtime& realtime);
 
 /// Puts the calling thread under SCHED_FIFO. `priority` 1...99; 0: it is not asked for.

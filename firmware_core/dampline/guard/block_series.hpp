@@ -91,8 +91,8 @@ class BlockSeries {
   /// The most significant step with kSide blocks on either side.
   [[nodiscard]] Step step() const noexcept;
   [[nodiscard]] Trend trend() const noexcept;
-  /// Whether a line leaves less, in squares, than the means on either side of a step at `block`. The
-  /// nearest block on either side may hold the change, and counts for neither.
+  /// Whether a line leaves less, in squares, than the means on either side of a step at `block`.
+  /// The nearest block on either side may hold the change, and counts for neither.
   [[nodiscard]] bool is_straight(std::size_t block) const noexcept;
 
  private:
