@@ -26,10 +26,19 @@ namespace dampline::app {
 
 namespace {
 
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+constexpr std::size_t kStackBytes = std::size_t{2} << 20U;  // what they need beside it
+#else
+constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
+#endif
+#else
+constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
+#endif
+
 /// A locked stack is there whole: with the usual 8 MiB, those of three threads would be a third of
 /// what the program holds. They use 160 KB at most.
 void keep_stacks_small() noexcept {
-  constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
   pthread_attr_t attributes;
   if (::pthread_attr_init(&attributes) != 0) return;
   if (::pthread_attr_setstacksize(&attributes, kStackBytes) == 0)
