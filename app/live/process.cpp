@@ -26,12 +26,15 @@ namespace dampline::app {
 
 namespace {
 
-#if defined(__has_feature)
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+#define DAMPLINE_SANITIZED
+#elif defined(__has_feature)
 #if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
-constexpr std::size_t kStackBytes = std::size_t{2} << 20U;  // what they need beside it
-#else
-constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
+#define DAMPLINE_SANITIZED
 #endif
+#endif
+#ifdef DAMPLINE_SANITIZED
+constexpr std::size_t kStackBytes = std::size_t{2} << 20U;  // what sanitizers need beside it
 #else
 constexpr std::size_t kStackBytes = std::size_t{512} << 10U;
 #endif
