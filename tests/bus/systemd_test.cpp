@@ -145,7 +145,9 @@ TEST_F(TimeTravelSystemd, FromBootToStopEveryFrameIsThere) {
   EXPECT_EQ(within({"journalctl", "-q", "-p", "warning", "-u", unit()}), "");
 }
 
-TEST_F(TimeTravelSystemd, ItBeginsAnewWhenKilledAndWhenItHangs) {
+using TimeTravelNightlySystemd = TimeTravelSystemd;
+
+TEST_F(TimeTravelNightlySystemd, ItBeginsAnewWhenKilledAndWhenItHangs) {
   boot();
   ASSERT_TRUE(becomes("ActiveState", "active"));
   drive(5.0);
@@ -171,7 +173,7 @@ TEST_F(TimeTravelSystemd, ItBeginsAnewWhenKilledAndWhenItHangs) {
   EXPECT_LE(recorded(), sensors_.made());
 }
 
-TEST_F(TimeTravelSystemd, AWrongConfigurationIsSaidOnce) {
+TEST_F(TimeTravelNightlySystemd, AWrongConfigurationIsSaidOnce) {
   configure("[estimat]\n");
   boot();
   ASSERT_TRUE(becomes("ActiveState", "failed"));
@@ -187,7 +189,7 @@ TEST_F(TimeTravelSystemd, AWrongConfigurationIsSaidOnce) {
 }
 
 // Each boot begins in 1970, and the power goes before the time is there; but for the last.
-TEST_F(TimeTravelSystemd, ALoopOfBootsWithoutAClockKeepsItsRecording) {
+TEST_F(TimeTravelNightlySystemd, ALoopOfBootsWithoutAClockKeepsItsRecording) {
   constexpr int kBoots = 5;
   constexpr std::uint64_t kUnsynced = 2 * 3 * Sensors::kRateHz;  // frames of two seconds
   timespec before{};
@@ -211,7 +213,7 @@ TEST_F(TimeTravelSystemd, ALoopOfBootsWithoutAClockKeepsItsRecording) {
   EXPECT_GE(recorded() + (kBoots - 1) * kUnsynced, sensors_.made());
 }
 
-TEST_F(TimeTravelSystemd, WithoutABusItTriesAgainUntilThereIsOne) {
+TEST_F(TimeTravelNightlySystemd, WithoutABusItTriesAgainUntilThereIsOne) {
   bus_.down();
   run({"ip", "link", "set", bus_.name(), "name", "away0"});
   boot();

@@ -18,18 +18,18 @@ namespace {
 
 using dampline::test::parameter;
 
-constexpr double kRateHz = 400.0;
-constexpr double kLengthS = 40.0;
-constexpr int kFine = 25;
+constexpr double kFixtureRateHz = 400.0;
+constexpr double kFixtureLengthS = 40.0;
+constexpr int kFixtureSteps = 25;
 
-struct Motion {
+struct FixtureMotion {
   double x{0.0};
   double v{0.0};
   double a{0.0};
 };
 
-Motion motion_at(double t) {
-  Motion out;
+FixtureMotion fixture_motion(double t) {
+  FixtureMotion out;
   const double tones[][3] = {
       {0.005, 0.53, 0.0}, {0.003, 1.31, 1.0}, {0.0015, 3.3, 2.0}, {0.0006, 4.7, 0.5}};
   for (const auto& [amplitude, hz, phase] : tones) {
@@ -41,7 +41,7 @@ Motion motion_at(double t) {
   return out;
 }
 
-double simple(const Motion& m) { return 300.0 * (m.v < 0.0 ? -1.0 : 1.0) + 900.0 * m.v; }
+double simple(const FixtureMotion& m) { return 300.0 * (m.v < 0.0 ? -1.0 : 1.0) + 900.0 * m.v; }
 
 /// y'' = w^2 (u(t) - y) - 2 D w y'.
 struct Oscillator {
@@ -70,13 +70,14 @@ std::string record_of(const Force& force, std::uint64_t seed, double late_s = 0.
   std::mt19937_64 random{seed};
   std::normal_distribution<double> noise;
   std::string text = "time_s,deflection_m,force_n\n";
-  const double h = 1.0 / (kRateHz * kFine);
-  for (int i = -800; i < static_cast<int>(kRateHz * kLengthS); ++i) {
+  const double h = 1.0 / (kFixtureRateHz * kFixtureSteps);
+  for (int i = -800; i < static_cast<int>(kFixtureRateHz * kFixtureLengthS); ++i) {
     double now_n = 0.0;
-    for (int k = 0; k < kFine; ++k) now_n = force((i * kFine + k) * h, h);
-    const double t = (i + 1) / kRateHz;
+    for (int k = 0; k < kFixtureSteps; ++k) now_n = force((i * kFixtureSteps + k) * h, h);
+    const double t = (i + 1) / kFixtureRateHz;
     if (i < 0) continue;
-    text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t, motion_at(t + late_s).x + 1e-7 * noise(random),
+    text += fmt::format("{:.6f},{:.9f},{:.4f}\n", t,
+                        fixture_motion(t + late_s).x + 1e-7 * noise(random),
                         now_n + 4.0 * noise(random));
   }
   return text;
@@ -85,7 +86,7 @@ std::string record_of(const Force& force, std::uint64_t seed, double late_s = 0.
 /// What the cell under a fixture measures, the damper's force acting on it.
 Force behind_fixture(double hz, double damping) {
   return [o = Oscillator{2.0 * M_PI * hz, damping}](double t, double h) mutable {
-    o.step([](double at) { return simple(motion_at(at)); }, t, h);
+    o.step([](double at) { return simple(fixture_motion(at)); }, t, h);
     return o.y;
   };
 }
@@ -94,15 +95,15 @@ Force behind_fixture(double hz, double damping) {
 Force with_passenger(double kg, double hz, double damping) {
   return [kg, o = Oscillator{2.0 * M_PI * hz, damping}](double t, double h) mutable {
     // z: of the mass against its foot; z'' + 2 D w z' + w^2 z = -x''.
-    o.step([&](double at) { return -motion_at(at).a / (o.w * o.w); }, t, h);
+    o.step([&](double at) { return -fixture_motion(at).a / (o.w * o.w); }, t, h);
     const double accel = -(o.w * o.w * o.y + 2.0 * o.damping * o.w * o.rate);
-    return simple(motion_at(t + h)) + kg * accel;
+    return simple(fixture_motion(t + h)) + kg * accel;
   };
 }
 
 Force with_mass(double kg) {
   return [kg](double t, double h) {
-    const Motion m = motion_at(t + h);
+    const FixtureMotion m = fixture_motion(t + h);
     return simple(m) + kg * m.a;
   };
 }
@@ -179,7 +180,7 @@ TEST(RigNoise, NeedNotBeWhite) {
         // First order, 25 Hz, 40 N.
         const double kept = std::exp(-2.0 * M_PI * 25.0 * h);
         colored_n = kept * colored_n + 40.0 * std::sqrt(1.0 - kept * kept) * normal(random);
-        return simple(motion_at(t + h)) + colored_n;
+        return simple(fixture_motion(t + h)) + colored_n;
       },
       71);
   EXPECT_TRUE(found.steps.empty()) << summarize(found);
@@ -197,7 +198,7 @@ TEST(RigNoise, IsNotWhatRingsWhereNoModeIsLookedFor) {
 TEST(RigSkew, IsAppliedToWhatIsPredicted) {
   constexpr double kLateS = 0.0041;
   const rig::Explanation found =
-      explained([](double t, double h) { return simple(motion_at(t + h)); }, 67, kLateS);
+      explained([](double t, double h) { return simple(fixture_motion(t + h)); }, 67, kLateS);
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "time_skew") << summarize(found);
   EXPECT_NEAR(parameter(found, "time_skew").value, 1e3 * kLateS, 0.2);

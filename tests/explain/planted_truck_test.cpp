@@ -131,7 +131,7 @@ TEST(ATruck, AModeIsFoundBetweenThePointsOfItsGrid) {
 
 TEST(ATruck, LacksNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {21U, 22U}) {
-    const Explained found = explained({}, seed);
+    const Explained found = explained(Plant{}, seed);
     EXPECT_EQ(found.explanation.conclusion, effect::Conclusion::kComplete) << summarize(found);
     EXPECT_NEAR(found.explanation.base_coulomb_n.value, kCoulombN, 0.02 * kCoulombN);
   }

@@ -26,18 +26,18 @@ using testing::HasSubstr;
 constexpr double kSeconds = 100.0;
 constexpr std::int64_t kSegmentNs = 20'000'000'000;
 
-const std::vector<SegmentFile>& states() {
+const std::vector<SegmentFile>& kept_states() {
   static const std::vector<SegmentFile> kStates = Logger{Logger::config(20.0, 6.0)}.drive(kSeconds);
   return kStates;
 }
 
 TEST(SegmentRun, IsCumulativeWithinASegmentAndBeginsAtFullOnes) {
-  const std::vector<SegmentFile> ended = last_states(states());
+  const std::vector<SegmentFile> ended = last_states(kept_states());
   ASSERT_EQ(ended.size(), 5U);  // the simulated time begins at a full one
-  EXPECT_GT(states().size(), 2 * ended.size());
-  for (std::size_t i = 1; i < states().size(); ++i) {
-    const StateAbout& a = states()[i - 1].about;
-    const StateAbout& b = states()[i].about;
+  EXPECT_GT(kept_states().size(), 2 * ended.size());
+  for (std::size_t i = 1; i < kept_states().size(); ++i) {
+    const StateAbout& a = kept_states()[i - 1].about;
+    const StateAbout& b = kept_states()[i].about;
     if (a.segment == b.segment) {
       EXPECT_LT(a.sequence, b.sequence);
       EXPECT_LT(a.end_ns, b.end_ns);
@@ -125,7 +125,7 @@ class SpoolTest : public SegmentsTest {
   /// The last state again, of the hour `i`.
   static SegmentFile hour(int i) {
     const auto sums = std::make_unique<Statistics>();
-    SegmentFile out = states().back();
+    SegmentFile out = kept_states().back();
     decode_state(out.bytes, "last", *sums);
     out.about.segment.start_ns += i * 3'600'000'000'000;
     out.bytes = encode_state(*sums, out.about);
@@ -142,8 +142,8 @@ class SpoolTest : public SegmentsTest {
 
 TEST_F(SpoolTest, HoldsOfEachSegmentTheNewest) {
   fleet::Spool spool = open();
-  for (const SegmentFile& state : states()) spool.put(state.about.segment, state.bytes);
-  const auto ended = last_states(states());
+  for (const SegmentFile& state : kept_states()) spool.put(state.about.segment, state.bytes);
+  const auto ended = last_states(kept_states());
   EXPECT_EQ(count(".dls"), ended.size());
   std::string files;
   for (const SegmentFile& state : ended)
@@ -205,8 +205,8 @@ TEST_F(SpoolTest, OnAFullDiskStatesWaitAndAreTold) {
 
 TEST_F(SpoolTest, ALaterStateIsToBeSentAgain) {
   fleet::Spool spool = open();
-  const SegmentFile& first = states().at(0);
-  const SegmentFile& second = states().at(1);
+  const SegmentFile& first = kept_states().at(0);
+  const SegmentFile& second = kept_states().at(1);
   ASSERT_EQ(first.about.segment, second.about.segment);
   spool.put(first.about.segment, first.bytes);
   EXPECT_FALSE(fleet::was_sent(file_of(first)));
@@ -219,13 +219,13 @@ TEST_F(SpoolTest, ALaterStateIsToBeSentAgain) {
 }
 
 TEST_F(SpoolTest, SurvivesAKillAtAnyMoment) {
-  ASSERT_FALSE(states().empty());  // made before the children
+  ASSERT_FALSE(kept_states().empty());  // made before the children
   for (int round = 0; round < 8; ++round) {
     const pid_t child = ::fork();
     if (child == 0) {
       fleet::Spool spool = open();
       for (std::size_t i = 0;; ++i) {
-        const SegmentFile& state = states()[i % states().size()];
+        const SegmentFile& state = kept_states()[i % kept_states().size()];
         spool.put(state.about.segment, state.bytes);
       }
     }

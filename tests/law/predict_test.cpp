@@ -24,9 +24,9 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr double kIntervalS = 0.004;
-constexpr int kSamples = 7500;
-constexpr int kFine = 40;
+constexpr double kPredictedIntervalS = 0.004;
+constexpr int kPredictedSamples = 7500;
+constexpr int kPredictedFine = 40;
 constexpr double kNoiseM = 3e-6;
 
 double force_at(double t, double phase) {
@@ -38,7 +38,7 @@ double force_at(double t, double phase) {
 
 /// A mass of 20 kg on a hardening spring with viscous damping: time_s, deflection_m, force_n.
 std::string record(double phase, bool with_motion) {
-  const double h = kIntervalS / kFine;
+  const double h = kPredictedIntervalS / kPredictedFine;
   const auto accel = [&](double t, double x, double v) {
     return (force_at(t, phase) - 60.0 * v - 4e4 * x - 3e8 * x * x * x) / 20.0;
   };
@@ -47,9 +47,9 @@ std::string record(double phase, bool with_motion) {
   std::string out = with_motion ? "time_s,deflection_m,force_n\n" : "time_s,force_n\n";
   double x = 0.0;
   double v = 0.0;
-  for (int i = 0; i < kSamples * kFine; ++i) {
+  for (int i = 0; i < kPredictedSamples * kPredictedFine; ++i) {
     const double t = i * h;
-    if (i % kFine == 0)
+    if (i % kPredictedFine == 0)
       out += with_motion
                  ? fmt::format("{:.6f},{:.9g},{:.9g}\n", t, x + noise(random), force_at(t, phase))
                  : fmt::format("{:.6f},{:.9g}\n", t, force_at(t, phase));

@@ -39,9 +39,9 @@ class Schema : public RunFilesTest {
   /// `change` makes the file wrong.
   template <class Change>
   void expect_refused(const std::string& file, const char* what, Change change) const {
-    auto json = nlohmann::json::parse(program_.read(file));
-    change(json);
-    program_.write("changed.json", json.dump());
+    auto parameters = nlohmann::json::parse(program_.read(file));
+    change(parameters);
+    program_.write("changed.json", parameters.dump());
     EXPECT_EQ(validate("changed.json").code, 1) << what;
   }
 };
@@ -64,8 +64,8 @@ TEST_F(Schema, HoldsForFaultyData) {
            "loss:fraction=0.0001 --effect time_drift");
   expect_success("identify run.log --quiet --no-report --out i");
   expect_valid("i/parameters.json");
-  const auto json = nlohmann::json::parse(program_.read("i/parameters.json"));
-  EXPECT_FALSE(json.at("faults").empty());
+  const auto parameters = nlohmann::json::parse(program_.read("i/parameters.json"));
+  EXPECT_FALSE(parameters.at("faults").empty());
   program_.run("explain run.log --quiet --no-report --out e");
   expect_valid("e/explanation.json");
 }
@@ -80,7 +80,7 @@ TEST_F(Schema, HoldsForARig) {
   expect_valid("e/explanation.json");
   expect_valid("e/law.json");
   expect_refused("e/law.json", "no covariance",
-                 [](nlohmann::json& json) { json.erase("covariance"); });
+                 [](nlohmann::json& law) { law.erase("covariance"); });
   expect_success("explain rig.csv other.csv --quiet --no-report --out both");
   expect_valid("both/parameters.json");
   expect_valid("both/explanation.json");
@@ -144,7 +144,7 @@ TEST_F(Schema, HoldsForALiveRun) {
   const auto written_ns = utc_ns(live.at("written_utc").get<std::string>());
   ASSERT_TRUE(written_ns.has_value());
   EXPECT_LT(std::abs(clock.realtime_ns() - *written_ns), 60'000'000'000);
-  expect_refused("live.json", "no time stamp", [](auto& json) { json.erase("written_utc"); });
+  expect_refused("live.json", "no time stamp", [](auto& state) { state.erase("written_utc"); });
 }
 
 TEST_F(Schema, RefusesWhatIsNone) {

@@ -12,7 +12,7 @@ namespace dampline::service {
 namespace {
 
 const std::string kPage = DAMPLINE_SOURCE_DIR "/app/man/dampline.1";
-const std::string kProgram = "'" DAMPLINE_BINARY_DIR "/dampline' ";
+const std::string kDampline = "'" DAMPLINE_BINARY_DIR "/dampline' ";
 
 /// All that a pattern's first group finds.
 std::set<std::string> all(const std::string& text, const std::string& pattern) {
@@ -25,7 +25,7 @@ std::set<std::string> all(const std::string& text, const std::string& pattern) {
   return found;
 }
 
-std::string help(const std::string& verb) { return shell(kProgram + verb + " --help").output; }
+std::string help(const std::string& verb) { return shell(kDampline + verb + " --help").output; }
 
 std::set<std::string> verbs() {
   const std::string text = help("");
