@@ -90,24 +90,11 @@ constexpr int kRounds = 3;
 constexpr double kEnoughS = 20e-6;  // of a channel's lateness
 constexpr double kSettled = 0.998;  // of the error of the round before
 
-bool is_late(const effect::Step& step) noexcept {
-  return step.chosen.effect == effect::Effect::kTimeSkew;
-}
-
 /// The late channels among an explanation's steps, as columns.
 effect::Model late_channels(const effect::Explanation& e) noexcept {
   effect::Model out;
   for (std::size_t i = 0; i < e.step_count; ++i)
     if (is_late(e.step[i])) out = out.with(e.step[i].chosen);
-  return out;
-}
-
-using LateEstimates = std::array<Estimate, kChannels>;
-
-LateEstimates late_of(const effect::Explanation& e) noexcept {
-  LateEstimates out{};
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    if (is_late(e.step[i])) out[e.step[i].chosen.form] = e.step[i].parameter[0].estimate;
   return out;
 }
 

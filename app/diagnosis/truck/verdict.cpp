@@ -89,6 +89,17 @@ bool are_faint(const effect::Explanation& e) noexcept {
 
 }  // namespace
 
+bool is_late(const effect::Step& step) noexcept {
+  return step.chosen.effect == effect::Effect::kTimeSkew;
+}
+
+LateEstimates late_of(const effect::Explanation& e) noexcept {
+  LateEstimates out{};
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    if (is_late(e.step[i])) out[e.step[i].chosen.form] = e.step[i].parameter[0].estimate;
+  return out;
+}
+
 void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept {
   FaultView& faults = out.circumstances.faults;
   if (faults.count == faults.faults.size()) return;
@@ -100,14 +111,9 @@ void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explai
 
 void excuse_rate(const Config& config, Explained& out) noexcept {
   if (!config.car.wheelbase_m || !config.input.speed_mps) return;
-  double between_s = 0.0;  // wheelset 2 after wheelset 1
-  for (std::size_t i = 0; i < out.explanation.step_count; ++i) {
-    const effect::Step& step = out.explanation.step[i];
-    if (step.chosen.effect != effect::Effect::kTimeSkew) continue;
-    const double late_s = step.parameter[0].estimate.value;
-    if (step.chosen.form == effect::kWheelset1Form) between_s -= late_s;
-    if (step.chosen.form == effect::kWheelset2Form) between_s += late_s;
-  }
+  const LateEstimates late_s = late_of(out.explanation);
+  const double between_s =
+      late_s[effect::kWheelset2Form].value - late_s[effect::kWheelset1Form].value;
   const double late = std::abs(between_s) * *config.input.speed_mps / *config.car.wheelbase_m;
   FaultView& faults = out.circumstances.faults;
   const auto is_excused = [&](const Fault& fault) {
@@ -164,8 +170,7 @@ std::size_t needless_step(const effect::Explanation& e) noexcept {
   for (std::size_t i = 0; i < e.step_count; ++i) {
     const effect::Step& step = e.step[i];
     const Estimate& first = step.parameter[0].estimate;
-    if (step.chosen.effect == effect::Effect::kTimeSkew && std::abs(first.value) < 2.0 * first.std)
-      return i;
+    if (is_late(step) && std::abs(first.value) < 2.0 * first.std) return i;
     if (is_below_nothing(step) || is_below_floor(step, i == 0, e.floor_nmse)) return i;
   }
   return e.step_count;
@@ -174,17 +179,11 @@ std::size_t needless_step(const effect::Explanation& e) noexcept {
 bool take_needless(const effect::Explanation& e, Needless& known) noexcept {
   const std::size_t needless = needless_step(e);
   if (needless == e.step_count) return false;
-  const effect::Effect effect = e.step[needless].chosen.effect;
-  const auto late_before = [&e, needless] {
-    const auto* const end = e.step.data() + needless;
-    return std::any_of(e.step.data(), end, [](const effect::Step& step) {
-      return step.chosen.effect == effect::Effect::kTimeSkew;
-    });
-  };
-  if (effect == effect::Effect::kTimeSkew && late_before())
+  const effect::Step& step = e.step[needless];
+  if (is_late(step) && std::any_of(e.step.data(), &step, is_late))
     known.second_late = true;
   else
-    known.effect[static_cast<std::size_t>(effect)] = true;
+    known.effect[static_cast<std::size_t>(step.chosen.effect)] = true;
   return true;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <array>
+
 #include "app/config/config.hpp"
 #include "app/diagnosis/truck/explain.hpp"
 #include "dampline/effect/explainer.hpp"
@@ -25,6 +27,12 @@ inline constexpr double kBelowFloor = 0.85;  ///< times the floor: less than sen
 [[nodiscard]] std::size_t needless_step(const effect::Explanation& explanation) noexcept;
 /// Adds it to those that are known. False where there is none.
 [[nodiscard]] bool take_needless(const effect::Explanation& explanation, Needless& known) noexcept;
+
+/// The step holds a channel that is late.
+[[nodiscard]] bool is_late(const effect::Step& step) noexcept;
+/// In s, by channels; 0 where no step says so.
+using LateEstimates = std::array<Estimate, kChannels>;
+[[nodiscard]] LateEstimates late_of(const effect::Explanation& explanation) noexcept;
 
 /// One fault more, beside which no effect is named.
 void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept;
