@@ -37,23 +37,10 @@ Outcome<std::unique_ptr<RecordedFrames>> BlfSource::open(const FrameFileConfig& 
 }
 
 BlfSource::BlfSource(const FrameFileConfig& config, ByteStream stream)
-    : file_{std::move(stream), kFileBuffer},
-      wanted_{config.interfaces},
-      skip_bad_lines_{config.skip_bad_lines},
+    : RecordedFrames{config},
+      file_{std::move(stream), kFileBuffer},
       inflate_{make_zlib()},
       objects_(kObjectsBuffer) {}
-
-Result<std::size_t> BlfSource::do_read(std::span<CanFrame> out) noexcept {
-  std::size_t count = 0;
-  while (count < out.size() && !stopped_) {
-    const Step step = read_one(out[count]);
-    if (step == Step::kFrame) ++count;
-    if (step == Step::kWait) break;
-  }
-  health_.frames += count;
-  if (count == 0 && stopped_) return reason_;
-  return count;
-}
 
 BlfSource::Status BlfSource::take_file_header() noexcept {
   if (header_taken_) return Status::kBytes;
@@ -186,9 +173,7 @@ BlfSource::Step BlfSource::deliver(CanFrame& frame, std::uint32_t channel) noexc
   ChannelName name;
   const std::string_view interface = name.set(channel);
   const auto index = interfaces_.index_of(interface);
-  const bool wanted =
-      wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), interface) != wanted_.end();
-  if (!wanted || !index) {
+  if (!is_wanted(interface) || !index) {
     ++health_.ignored;
     return Step::kNoFrame;
   }
@@ -240,13 +225,6 @@ BlfSource::Step BlfSource::end(Status status) noexcept {
   if (!header_taken_)
     return stop(Errc::kMalformed, fmt::format("{}: ends within its header", file_.stream().name()));
   return stop(Errc::kEndOfStream, {});
-}
-
-BlfSource::Step BlfSource::stop(Errc reason, std::string text) noexcept {
-  stopped_ = true;
-  reason_ = reason;
-  error_ = std::move(text);
-  return Step::kStop;
 }
 
 }  // namespace dampline::drivers

@@ -32,13 +32,10 @@ class BlfSource final : public RecordedFrames {
 
  private:
   BlfSource(const FrameFileConfig& config, ByteStream stream);
-  [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override;
   [[nodiscard]] Result<bool> do_wait(std::chrono::nanoseconds timeout) noexcept override {
-    return stopped_ || file_.stream().wait(timeout);
+    return stopped() || file_.stream().wait(timeout);
   }
-  [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return health_; }
 
-  enum class Step : std::uint8_t { kFrame, kNoFrame, kWait, kStop };
   using Status = ByteStream::Status;
   [[nodiscard]] Status take_file_header() noexcept;
   [[nodiscard]] Status need_objects(std::size_t count) noexcept;
@@ -47,16 +44,13 @@ class BlfSource final : public RecordedFrames {
   [[nodiscard]] std::span<const char> objects() const noexcept {
     return std::span{objects_}.subspan(objects_begin_, objects_end_ - objects_begin_);
   }
-  Step read_one(CanFrame& frame) noexcept;
+  [[nodiscard]] Step read_one(CanFrame& frame) noexcept override;
   Step take_object(CanFrame& frame) noexcept;
   Step deliver(CanFrame& frame, std::uint32_t channel) noexcept;
   Step no_object() noexcept;
   Step end(Status status) noexcept;
-  Step stop(Errc reason, std::string text) noexcept;
 
   ByteReader file_;
-  std::vector<std::string> wanted_;
-  bool skip_bad_lines_;
   bool header_taken_{false};
   std::int64_t start_ns_{0};  // since 1970 in local time; 0: the file does not say
   std::unique_ptr<Decompressor> inflate_;
@@ -70,9 +64,6 @@ class BlfSource final : public RecordedFrames {
   bool damaged_{false};         // a container
   bool searching_{false};       // for an object, behind bytes that were none
   TimeGate gate_;
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
-  hal::SourceHealth health_{};
 };
 
 }  // namespace dampline::drivers

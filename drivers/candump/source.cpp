@@ -28,26 +28,12 @@ Outcome<std::unique_ptr<CandumpSource>> CandumpSource::open(const FrameFileConfi
 }
 
 CandumpSource::CandumpSource(const FrameFileConfig& config, LineReader reader)
-    : reader_{std::move(reader)},
-      wanted_{config.interfaces},
-      skip_bad_lines_{config.skip_bad_lines} {
+    : RecordedFrames{config}, reader_{std::move(reader)} {
   first_line_.reserve(kFirstLine);
 }
 
-Result<std::size_t> CandumpSource::do_read(std::span<CanFrame> out) noexcept {
-  std::size_t count = 0;
-  while (count < out.size() && !stopped_) {
-    const Step step = read_one(out[count]);
-    if (step == Step::kFrame) ++count;
-    if (step == Step::kWait) break;
-  }
-  health_.frames += count;
-  if (count == 0 && stopped_) return reason_;
-  return count;
-}
-
 Result<bool> CandumpSource::do_wait(std::chrono::nanoseconds timeout) noexcept {
-  return stopped_ || reader_.wait(timeout);
+  return stopped() || reader_.wait(timeout);
 }
 
 CandumpSource::Step CandumpSource::read_one(CanFrame& frame) noexcept {
@@ -77,7 +63,7 @@ CandumpSource::Step CandumpSource::take_line(std::string_view line, CanFrame& fr
   CandumpFault fault = parser_.parse(line, frame);
   if (fault.expected != nullptr) return bad_line(line, fault);
   recognised_ = true;
-  if (!wanted(parser_.interface_name())) {
+  if (!is_wanted(parser_.interface_name())) {
     ++health_.ignored;
     return Step::kNoFrame;
   }
@@ -87,10 +73,6 @@ CandumpSource::Step CandumpSource::take_line(std::string_view line, CanFrame& fr
   fault = check_time(line, frame);
   if (fault.expected != nullptr) return bad_line(line, fault);
   return Step::kFrame;
-}
-
-bool CandumpSource::wanted(std::string_view interface) const noexcept {
-  return wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), interface) != wanted_.end();
 }
 
 // Looking ahead moves the buffer, and `line` with it: a fault must be reported before, or without
@@ -180,13 +162,6 @@ std::string CandumpSource::wrong_kind() const {
                                          : "no frame";
   return fmt::format("{}: found {} beginning {}, expected {}", reader_.name(), kind, quote(first),
                      kExample);
-}
-
-CandumpSource::Step CandumpSource::stop(Errc reason, std::string text) noexcept {
-  stopped_ = true;
-  reason_ = reason;
-  error_ = std::move(text);
-  return Step::kStop;
 }
 
 }  // namespace dampline::drivers

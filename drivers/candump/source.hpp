@@ -34,33 +34,23 @@ class CandumpSource final : public RecordedFrames {
 
  private:
   CandumpSource(const FrameFileConfig& config, LineReader reader);
-  [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override;
   [[nodiscard]] Result<bool> do_wait(std::chrono::nanoseconds timeout) noexcept override;
-  [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return health_; }
 
-  enum class Step : std::uint8_t { kFrame, kNoFrame, kWait, kStop };
-  Step read_one(CanFrame& frame) noexcept;
+  [[nodiscard]] Step read_one(CanFrame& frame) noexcept override;
   Step take_line(std::string_view line, CanFrame& frame) noexcept;
   void remember_first(std::string_view line) noexcept;
   Step ignore_line(std::string_view line) noexcept;
   Step bad_line(std::string_view line, const CandumpFault& fault) noexcept;
   Step end_of_file() noexcept;
-  Step stop(Errc reason, std::string text) noexcept;
-  [[nodiscard]] bool wanted(std::string_view interface) const noexcept;
   [[nodiscard]] CandumpFault check_time(std::string_view line, CanFrame& frame) noexcept;
   [[nodiscard]] bool next_goes_back(std::int64_t time_ns) noexcept;
   [[nodiscard]] std::string wrong_kind() const;
 
   LineReader reader_;
   CandumpLine parser_;
-  std::vector<std::string> wanted_;
-  bool skip_bad_lines_;
   bool recognised_{false};  // a line of candump's was seen
   bool any_frame_{false};
   std::int64_t newest_ns_{0};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
-  hal::SourceHealth health_{};
   std::string first_line_;  // to say what a file is that is no candump log
 };
 

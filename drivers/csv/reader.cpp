@@ -176,19 +176,6 @@ Outcome<std::unique_ptr<CsvReader>> CsvReader::open(const RowFileConfig& config)
 CsvReader::CsvReader(const RowFileConfig& config, LineReader reader)
     : RecordedRows{config}, reader_{std::move(reader)} {}
 
-Result<std::size_t> CsvReader::do_read(std::span<double> out) noexcept {
-  const std::size_t width = names_.size();
-  if (width == 0) return Errc::kInvalidConfig;
-  std::size_t rows = 0;
-  while ((rows + 1) * width <= out.size() && !stopped_) {
-    const Step step = read_one(out.subspan(rows * width, width));
-    if (step == Step::kRow) ++rows;
-    if (step == Step::kWait) break;
-  }
-  if (rows == 0 && stopped_) return reason_;
-  return rows;
-}
-
 CsvReader::Step CsvReader::read_one(std::span<double> row) noexcept {
   if (!first_row_.empty()) return take_line(std::exchange(first_row_, {}), row);
   std::string_view line;
@@ -259,34 +246,21 @@ CsvReader::Step CsvReader::take_line(std::string_view line, std::span<double> ro
                     fmt::format("{}", place_of_.size()));
   }
   if (const std::string fault = check_time(row); !fault.empty())
-    return bad_line(fmt::format("{}:{}:1: {}", reader_.name(), reader_.line_number(), fault));
+    return bad_row(fmt::format("{}:{}:1: {}", reader_.name(), reader_.line_number(), fault));
   health_.line = reader_.line_number();
   return Step::kRow;
 }
 
 CsvReader::Step CsvReader::bad_line(std::size_t column, std::string found,
                                     std::string expected) noexcept {
-  return bad_line(fmt::format("{}:{}:{}: found {}, expected {}", reader_.name(),
-                              reader_.line_number(), column, found, expected));
-}
-
-CsvReader::Step CsvReader::bad_line(std::string text) noexcept {
-  ++health_.malformed;
-  if (skip_bad_lines_) return Step::kNoRow;
-  return stop(Errc::kMalformed, std::move(text));
+  return bad_row(fmt::format("{}:{}:{}: found {}, expected {}", reader_.name(),
+                             reader_.line_number(), column, found, expected));
 }
 
 CsvReader::Step CsvReader::end_of_file() noexcept {
   health_.truncated = health_.truncated || reader_.is_cut_off();
   if (health_.rows > 0) return stop(Errc::kEndOfStream, {});
   return stop(Errc::kMalformed, fmt::format("{}: found a header but no row", reader_.name()));
-}
-
-CsvReader::Step CsvReader::stop(Errc reason, std::string text) noexcept {
-  stopped_ = true;
-  reason_ = reason;
-  error_ = std::move(text);
-  return Step::kStop;
 }
 
 }  // namespace dampline::drivers

@@ -39,29 +39,22 @@ class CsvReader final : public RecordedRows {
 
  private:
   CsvReader(const RowFileConfig& config, LineReader reader);
-  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept override;
-
-  enum class Step : std::uint8_t { kRow, kNoRow, kWait, kStop };
+  [[nodiscard]] Step read_one(std::span<double> row) noexcept override;
   [[nodiscard]] Outcome<bool> read_header();
   [[nodiscard]] LineReader::Status next_line(std::string_view& line) noexcept;
   void pass_preamble() noexcept;
   [[nodiscard]] bool read_cell(std::string_view cell, double& number) noexcept;
-  Step read_one(std::span<double> row) noexcept;
   [[nodiscard]] static bool is_comment(std::string_view line) noexcept;
   bool take_units(std::string_view line) noexcept;
   Step take_line(std::string_view line, std::span<double> row) noexcept;
   Step end_of_file() noexcept;
   Step bad_line(std::size_t column, std::string found, std::string expected) noexcept;
-  Step bad_line(std::string text) noexcept;
-  Step stop(Errc reason, std::string text) noexcept;
 
   LineReader reader_;
   char separator_{','};
   bool has_preamble_{false};
   std::optional<std::int64_t> first_stamp_ns_;
   std::string first_row_;  // that was read in search of the header
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
 };
 
 }  // namespace dampline::drivers

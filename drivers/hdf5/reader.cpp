@@ -141,36 +141,16 @@ class Hdf5Reader final : public RecordedRows {
     return true;
   }
 
-  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept override {
-    const std::size_t width = names_.size();
-    if (width == 0) return Errc::kInvalidConfig;
-    std::size_t rows = 0;
-    while ((rows + 1) * width <= out.size() && !stopped_) {
-      const auto row = out.subspan(rows * width, width);
-      if (row_ == rows_) {
-        stopped_ = true;
-      } else if (!read_row(row)) {
-        stop(fmt::format("{}: row {}: cannot be read: the file is damaged or cut off", file_name_,
-                         row_ + 1));
-      } else {
-        ++row_;
-        const std::string fault = check_time(row);
-        health_.line = row_;
-        if (fault.empty()) {
-          ++rows;
-        } else {
-          ++health_.malformed;
-          if (!skip_bad_lines_) stop(fmt::format("{}: row {}: {}", file_name_, row_, fault));
-        }
-      }
-    }
-    if (rows > 0 || !stopped_) return rows;
-    return reason_;
-  }
-  void stop(std::string text) {
-    stopped_ = true;
-    reason_ = Errc::kMalformed;
-    error_ = std::move(text);
+  [[nodiscard]] Step read_one(std::span<double> row) noexcept override {
+    if (row_ == rows_) return stop(Errc::kEndOfStream, {});
+    if (!read_row(row))
+      return stop(Errc::kMalformed,
+                  fmt::format("{}: row {}: cannot be read: the file is damaged or cut off",
+                              file_name_, row_ + 1));
+    health_.line = ++row_;
+    const std::string fault = check_time(row);
+    if (fault.empty()) return Step::kRow;
+    return bad_row(fmt::format("{}: row {}: {}", file_name_, row_, fault));
   }
 
   std::string file_name_;
@@ -178,8 +158,6 @@ class Hdf5Reader final : public RecordedRows {
   std::vector<Set> sets_;
   std::uint64_t rows_{0};
   std::uint64_t row_{0};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
 };
 
 }  // namespace

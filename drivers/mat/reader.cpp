@@ -201,33 +201,15 @@ class MatReader final : public RecordedRows {
     return true;
   }
 
-  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept override {
-    const std::size_t width = names_.size();
-    if (width == 0) return Errc::kInvalidConfig;
-    std::size_t rows = 0;
-    while ((rows + 1) * width <= out.size() && !stopped_) {
-      if (row_ == rows_) {
-        stopped_ = true;
-        break;
-      }
-      const auto row = out.subspan(rows * width, width);
-      for (std::size_t i = 0; i < width; ++i)
-        row[i] = columns_[i].empty() ? std::numeric_limits<double>::quiet_NaN()
-                                     : columns_[i][static_cast<std::size_t>(row_)];
-      health_.line = ++row_;
-      const std::string fault = check_time(row);
-      if (fault.empty()) {
-        ++rows;
-        continue;
-      }
-      ++health_.malformed;
-      if (skip_bad_lines_) continue;
-      error_ = fmt::format("{}: row {}: {}", file_name_, row_, fault);
-      reason_ = Errc::kMalformed;
-      stopped_ = true;
-    }
-    if (rows > 0 || !stopped_) return rows;
-    return reason_;
+  [[nodiscard]] Step read_one(std::span<double> row) noexcept override {
+    if (row_ == rows_) return stop(Errc::kEndOfStream, {});
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = columns_[i].empty() ? std::numeric_limits<double>::quiet_NaN()
+                                   : columns_[i][static_cast<std::size_t>(row_)];
+    health_.line = ++row_;
+    const std::string fault = check_time(row);
+    if (fault.empty()) return Step::kRow;
+    return bad_row(fmt::format("{}: row {}: {}", file_name_, row_, fault));
   }
 
   std::string file_name_;
@@ -237,8 +219,6 @@ class MatReader final : public RecordedRows {
   std::vector<std::vector<double>> columns_;  // by place in the row; empty: the file has none
   std::uint64_t rows_{0};
   std::uint64_t row_{0};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
 };
 
 }  // namespace

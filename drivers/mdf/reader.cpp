@@ -110,11 +110,10 @@ void MdfReader::take_record(std::span<double> row) noexcept {
   }
 }
 
-/// False: there is none, and reading stopped.
-bool MdfReader::next_record() noexcept {
+MdfReader::Step MdfReader::read_one(std::span<double> row) noexcept {
   switch (records_->next()) {
     case MdfRecords::Step::kRecord:
-      return true;
+      return judge_record(row);
     case MdfRecords::Step::kCut:
       health_.truncated = true;
       break;
@@ -122,39 +121,18 @@ bool MdfReader::next_record() noexcept {
       health_.truncated = records_->is_short();
       break;
     case MdfRecords::Step::kFault:
-      stop(records_->fault());
-      return false;
+      return stop(Errc::kMalformed, fmt::format("{}: {}", layout_.name, records_->fault()));
   }
-  stopped_ = true;
-  if (row_ == 0) stop("holds no whole record");
-  return false;
+  if (row_ > 0) return stop(Errc::kEndOfStream, {});
+  return stop(Errc::kMalformed, fmt::format("{}: holds no whole record", layout_.name));
 }
 
-Result<std::size_t> MdfReader::do_read(std::span<double> out) noexcept {
-  const std::size_t width = names_.size();
-  if (width == 0) return Errc::kInvalidConfig;
-  std::size_t rows = 0;
-  while ((rows + 1) * width <= out.size() && !stopped_) {
-    if (!next_record()) break;
-    const auto row = out.subspan(rows * width, width);
-    take_record(row);
-    health_.line = ++row_;
-    const std::string fault = check_time(row);
-    if (fault.empty()) {
-      ++rows;
-      continue;
-    }
-    ++health_.malformed;
-    if (!skip_bad_lines_) stop(fmt::format("record {}: {}", row_, fault));
-  }
-  if (rows > 0 || !stopped_) return rows;
-  return reason_;
-}
-
-void MdfReader::stop(std::string text) noexcept {
-  stopped_ = true;
-  reason_ = Errc::kMalformed;
-  error_ = fmt::format("{}: {}", layout_.name, text);
+MdfReader::Step MdfReader::judge_record(std::span<double> row) noexcept {
+  take_record(row);
+  health_.line = ++row_;
+  const std::string fault = check_time(row);
+  if (fault.empty()) return Step::kRow;
+  return bad_row(fmt::format("{}: record {}: {}", layout_.name, row_, fault));
 }
 
 }  // namespace dampline::drivers

@@ -31,18 +31,15 @@ class MdfReader final : public RecordedRows {
   MdfReader(const RowFileConfig& config, MdfLayout layout)
       : RecordedRows{config}, layout_{std::move(layout)} {}
   [[nodiscard]] Outcome<bool> prepare(const RowFileConfig& config);
-  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept override;
+  [[nodiscard]] Step read_one(std::span<double> row) noexcept override;
   void take_record(std::span<double> row) noexcept;
-  [[nodiscard]] bool next_record() noexcept;
-  void stop(std::string text) noexcept;
+  Step judge_record(std::span<double> row) noexcept;
 
   MdfLayout layout_;
   const MdfGroup* group_{nullptr};
   std::vector<const MdfChannel*> columns_;  // of the header
   std::unique_ptr<MdfRecords> records_;
   std::uint64_t row_{0};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
 };
 
 }  // namespace dampline::drivers

@@ -19,9 +19,7 @@ Outcome<std::unique_ptr<RecordedFrames>> MdfSource::open(const FrameFileConfig& 
 }
 
 MdfSource::MdfSource(const FrameFileConfig& config, MdfLayout layout)
-    : layout_{std::move(layout)},
-      wanted_{config.interfaces},
-      skip_bad_lines_{config.skip_bad_lines} {}
+    : RecordedFrames{config}, layout_{std::move(layout)} {}
 
 Outcome<bool> MdfSource::prepare() {
   for (const MdfDataGroup& data_group : layout_.data_groups) {
@@ -56,15 +54,9 @@ RecordClock MdfSource::clock() const noexcept {
   return layout_.local_time ? RecordClock::kLocal : RecordClock::kUtc;
 }
 
-Result<std::size_t> MdfSource::do_read(std::span<CanFrame> out) noexcept {
-  std::size_t count = 0;
-  while (count < out.size() && !stopped_) {
-    Strand* const next = earliest();
-    if (next != nullptr && deliver(*next, out[count])) ++count;
-  }
-  health_.frames += count;
-  if (count == 0 && stopped_) return reason_;
-  return count;
+MdfSource::Step MdfSource::read_one(CanFrame& frame) noexcept {
+  Strand* const next = earliest();
+  return next != nullptr && deliver(*next, frame) ? Step::kFrame : Step::kNoFrame;
 }
 
 /// The strand whose frame is next; null: there is none, or reading stopped.
@@ -77,7 +69,7 @@ MdfSource::Strand* MdfSource::earliest() noexcept {
   }
   if (out != nullptr) return out;
   if (health_.frames == 0 && records_ == 0 && !health_.truncated) {
-    stop(Errc::kMalformed, "holds no frame");
+    stop_at("holds no frame");
   } else {
     stop(Errc::kEndOfStream, {});
   }
@@ -100,7 +92,7 @@ bool MdfSource::fill(Strand& strand) noexcept {
         strand.ended = true;
         break;
       case MdfRecords::Step::kFault:
-        stop(Errc::kMalformed, strand.records.fault());
+        stop_at(strand.records.fault());
         return false;
     }
   }
@@ -117,7 +109,7 @@ bool MdfSource::take_record(Strand& strand) noexcept {
     return true;
   }
   if (const std::string fault = group.fault(); !fault.empty()) {
-    stop(Errc::kMalformed, fault);
+    stop_at(fault);
     return false;
   }
   return bad_frame(wrong);
@@ -129,9 +121,7 @@ bool MdfSource::deliver(Strand& strand, CanFrame& frame) noexcept {
   frame = strand.frame;
   ChannelName name;
   const std::string_view interface = name.set(strand.channel);
-  const bool wanted =
-      wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), interface) != wanted_.end();
-  const auto index = wanted ? interfaces_.index_of(interface) : std::nullopt;
+  const auto index = is_wanted(interface) ? interfaces_.index_of(interface) : std::nullopt;
   if (!index) {
     ++health_.ignored;
     return false;
@@ -145,14 +135,12 @@ bool MdfSource::deliver(Strand& strand, CanFrame& frame) noexcept {
 bool MdfSource::bad_frame(const char* what) noexcept {
   ++health_.malformed;
   if (skip_bad_lines_) return true;
-  stop(Errc::kMalformed, fmt::format("record {}: found {}", records_, what));
+  stop_at(fmt::format("record {}: found {}", records_, what));
   return false;
 }
 
-void MdfSource::stop(Errc reason, std::string text) noexcept {
-  stopped_ = true;
-  reason_ = reason;
-  if (!text.empty()) error_ = fmt::format("{}: {}", layout_.name, text);
+void MdfSource::stop_at(const std::string& fault) noexcept {
+  stop(Errc::kMalformed, fmt::format("{}: {}", layout_.name, fault));
 }
 
 }  // namespace dampline::drivers

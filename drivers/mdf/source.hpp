@@ -40,27 +40,21 @@ class MdfSource final : public RecordedFrames {
   };
   MdfSource(const FrameFileConfig& config, MdfLayout layout);
   [[nodiscard]] Outcome<bool> prepare();
-  [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override;
+  [[nodiscard]] Step read_one(CanFrame& frame) noexcept override;
   [[nodiscard]] Result<bool> do_wait(std::chrono::nanoseconds /*timeout*/) noexcept override {
     return true;
   }
-  [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return health_; }
   [[nodiscard]] bool fill(Strand& strand) noexcept;
   [[nodiscard]] bool take_record(Strand& strand) noexcept;
   [[nodiscard]] Strand* earliest() noexcept;
   [[nodiscard]] bool deliver(Strand& strand, CanFrame& frame) noexcept;
   bool bad_frame(const char* what) noexcept;
-  void stop(Errc reason, std::string text) noexcept;
+  void stop_at(const std::string& fault) noexcept;
 
   MdfLayout layout_;
-  std::vector<std::string> wanted_;
-  bool skip_bad_lines_;
   std::vector<Strand> strands_;
   std::uint64_t records_{0};
   TimeGate gate_;
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
-  hal::SourceHealth health_{};
 };
 
 }  // namespace dampline::drivers

@@ -143,36 +143,16 @@ bool NpyReader::read_row(std::span<double> row) noexcept {
   return true;
 }
 
-Result<std::size_t> NpyReader::do_read(std::span<double> out) noexcept {
-  const std::size_t width = names_.size();
-  if (width == 0) return Errc::kInvalidConfig;
-  std::size_t rows = 0;
-  while ((rows + 1) * width <= out.size() && !stopped_) {
-    const auto row = out.subspan(rows * width, width);
-    if (row_ == rows_ || !read_row(row)) {
-      health_.truncated = row_ < rows_;
-      stopped_ = true;
-      break;
-    }
-    ++row_;
-    const std::string fault = check_time(row);
-    if (fault.empty()) {
-      health_.line = row_;
-      ++rows;
-      continue;
-    }
-    ++health_.malformed;
-    if (skip_bad_lines_) continue;
-    error_ = fmt::format("{}: row {}: {}", name_, row_, fault);
-    reason_ = Errc::kMalformed;
-    stopped_ = true;
+NpyReader::Step NpyReader::read_one(std::span<double> row) noexcept {
+  if (row_ == rows_ || !read_row(row)) {
+    health_.truncated = row_ < rows_;
+    if (health_.rows > 0) return stop(Errc::kEndOfStream, {});
+    return stop(Errc::kMalformed, fmt::format("{}: holds no whole row", name_));
   }
-  if (rows > 0 || !stopped_) return rows;
-  if (health_.rows == 0 && reason_ == Errc::kEndOfStream) {
-    error_ = fmt::format("{}: holds no whole row", name_);
-    reason_ = Errc::kMalformed;
-  }
-  return reason_;
+  health_.line = ++row_;
+  const std::string fault = check_time(row);
+  if (fault.empty()) return Step::kRow;
+  return bad_row(fmt::format("{}: row {}: {}", name_, row_, fault));
 }
 
 }  // namespace dampline::drivers

@@ -35,7 +35,7 @@ class NpyReader final : public RecordedRows {
     std::vector<NpyField> columns;
   };
   explicit NpyReader(const RowFileConfig& config) : RecordedRows{config}, name_{config.path} {}
-  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept override;
+  [[nodiscard]] Step read_one(std::span<double> row) noexcept override;
   [[nodiscard]] Outcome<bool> take_array(const std::shared_ptr<RandomFile>& file,
                                          std::uint64_t begin, std::uint64_t bytes, bool deflated,
                                          const std::string& name);
@@ -49,8 +49,6 @@ class NpyReader final : public RecordedRows {
   std::vector<std::optional<double>> first_s_;  // of columns that are times
   std::uint64_t rows_{0};
   std::uint64_t row_{0};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
 };
 
 }  // namespace dampline::drivers

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "drivers/text/quote.hpp"
 
 namespace dampline::drivers {
@@ -15,18 +13,6 @@ Outcome<std::unique_ptr<RecordedFrames>> FrameLines::open(const FrameFileConfig&
   if (!reader.ok()) return reader.failure();
   return std::unique_ptr<RecordedFrames>{
       new FrameLines{config, std::move(reader.value()), std::move(parser)}};
-}
-
-Result<std::size_t> FrameLines::do_read(std::span<CanFrame> out) noexcept {
-  std::size_t count = 0;
-  while (count < out.size() && !stopped_) {
-    const Step step = read_one(out[count]);
-    if (step == Step::kFrame) ++count;
-    if (step == Step::kWait) break;
-  }
-  health_.frames += count;
-  if (count == 0 && stopped_) return reason_;
-  return count;
 }
 
 FrameLines::Step FrameLines::read_one(CanFrame& frame) noexcept {
@@ -58,10 +44,8 @@ FrameLines::Step FrameLines::take_line(std::string_view line, CanFrame& frame) n
     return stop(Errc::kMalformed,
                 fmt::format("{}:{}: {}", reader_.name(), reader_.line_number(), refusal));
   if (found.kind == FrameLineParser::Kind::kBad) return bad_line(line, found);
-  const bool wanted =
-      wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), interface) != wanted_.end();
   any_frame_ = any_frame_ || found.kind == FrameLineParser::Kind::kFrame;
-  if (found.kind == FrameLineParser::Kind::kNoFrame || !wanted) {
+  if (found.kind == FrameLineParser::Kind::kNoFrame || !is_wanted(interface)) {
     ++health_.ignored;
     return Step::kNoFrame;
   }
@@ -93,13 +77,6 @@ FrameLines::Step FrameLines::end_of_file() noexcept {
   if (any_frame_) return stop(Errc::kEndOfStream, {});
   return stop(Errc::kMalformed, fmt::format("{}: holds no frame in its {} lines", reader_.name(),
                                             reader_.line_number()));
-}
-
-FrameLines::Step FrameLines::stop(Errc reason, std::string text) noexcept {
-  stopped_ = true;
-  reason_ = reason;
-  error_ = std::move(text);
-  return Step::kStop;
 }
 
 }  // namespace dampline::drivers

@@ -62,32 +62,20 @@ class FrameLines final : public RecordedFrames {
  private:
   FrameLines(const FrameFileConfig& config, LineReader reader,
              std::unique_ptr<FrameLineParser> parser)
-      : reader_{std::move(reader)},
-        parser_{std::move(parser)},
-        wanted_{config.interfaces},
-        skip_bad_lines_{config.skip_bad_lines} {}
-  [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept override;
+      : RecordedFrames{config}, reader_{std::move(reader)}, parser_{std::move(parser)} {}
   [[nodiscard]] Result<bool> do_wait(std::chrono::nanoseconds timeout) noexcept override {
-    return stopped_ || reader_.wait(timeout);
+    return stopped() || reader_.wait(timeout);
   }
-  [[nodiscard]] hal::SourceHealth do_health() const noexcept override { return health_; }
 
-  enum class Step : std::uint8_t { kFrame, kNoFrame, kWait, kStop };
-  Step read_one(CanFrame& frame) noexcept;
+  [[nodiscard]] Step read_one(CanFrame& frame) noexcept override;
   Step take_line(std::string_view line, CanFrame& frame) noexcept;
   Step bad_line(std::string_view line, const FrameLineParser::Found& found) noexcept;
   Step end_of_file() noexcept;
-  Step stop(Errc reason, std::string text) noexcept;
 
   LineReader reader_;
   std::unique_ptr<FrameLineParser> parser_;
-  std::vector<std::string> wanted_;
-  bool skip_bad_lines_;
   TimeGate gate_;
   bool any_frame_{false};
-  bool stopped_{false};
-  Errc reason_{Errc::kEndOfStream};
-  hal::SourceHealth health_{};
 };
 
 }  // namespace dampline::drivers

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "drivers/asc/parser.hpp"
@@ -23,6 +24,29 @@ Outcome<std::unique_ptr<RecordedFrames>> as_frames(Outcome<std::unique_ptr<Sourc
 }
 
 }  // namespace
+
+Result<std::size_t> RecordedFrames::do_read(std::span<CanFrame> out) noexcept {
+  std::size_t count = 0;
+  while (count < out.size() && !stopped_) {
+    const Step step = read_one(out[count]);
+    if (step == Step::kFrame) ++count;
+    if (step == Step::kWait) break;
+  }
+  health_.frames += count;
+  if (count == 0 && stopped_) return reason_;
+  return count;
+}
+
+RecordedFrames::Step RecordedFrames::stop(Errc reason, std::string text) noexcept {
+  stopped_ = true;
+  reason_ = reason;
+  error_ = std::move(text);
+  return Step::kStop;
+}
+
+bool RecordedFrames::is_wanted(std::string_view interface) const noexcept {
+  return wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), interface) != wanted_.end();
+}
 
 Outcome<std::unique_ptr<RecordedFrames>> open_frames(const FrameFileConfig& config) {
   const Outcome<RecordFormat> format = detect_format(config.path);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/candump/interface_table.hpp"
@@ -51,8 +52,28 @@ class RecordedFrames : public hal::FrameSource {
   [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 
  protected:
+  enum class Step : std::uint8_t { kFrame, kNoFrame, kWait, kStop };
+  explicit RecordedFrames(const FrameFileConfig& config)
+      : skip_bad_lines_{config.skip_bad_lines}, wanted_{config.interfaces} {}
+  /// One step further in the record.
+  [[nodiscard]] virtual Step read_one(CanFrame& frame) noexcept = 0;
+  /// Ends the reading; `text` as error_text().
+  Step stop(Errc reason, std::string text) noexcept;
+  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+  [[nodiscard]] bool is_wanted(std::string_view interface) const noexcept;
+
+  bool skip_bad_lines_;
   InterfaceTable interfaces_;
+  hal::SourceHealth health_{};
+
+ private:
+  [[nodiscard]] Result<std::size_t> do_read(std::span<CanFrame> out) noexcept final;
+  [[nodiscard]] hal::SourceHealth do_health() const noexcept final { return health_; }
+
+  std::vector<std::string> wanted_;
   std::string error_;
+  bool stopped_{false};
+  Errc reason_{Errc::kEndOfStream};
 };
 
 /// Opens a recording by its content. What is neither of the formats is read as a candump log, which

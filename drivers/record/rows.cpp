@@ -79,6 +79,31 @@ Outcome<bool> RecordedRows::choose_columns(const RowFileConfig& config, const st
   return true;
 }
 
+Result<std::size_t> RecordedRows::do_read(std::span<double> out) noexcept {
+  const std::size_t width = names_.size();
+  if (width == 0) return Errc::kInvalidConfig;
+  std::size_t rows = 0;
+  while ((rows + 1) * width <= out.size() && !stopped_) {
+    const Step step = read_one(out.subspan(rows * width, width));
+    if (step == Step::kRow) ++rows;
+    if (step == Step::kWait) break;
+  }
+  if (rows == 0 && stopped_) return reason_;
+  return rows;
+}
+
+RecordedRows::Step RecordedRows::bad_row(std::string text) noexcept {
+  ++health_.malformed;
+  return skip_bad_lines_ ? Step::kNoRow : stop(Errc::kMalformed, std::move(text));
+}
+
+RecordedRows::Step RecordedRows::stop(Errc reason, std::string text) noexcept {
+  stopped_ = true;
+  reason_ = reason;
+  error_ = std::move(text);
+  return Step::kStop;
+}
+
 std::string RecordedRows::check_time(std::span<const double> row) {
   const bool first = health_.rows == 0;
   if (time_place_ != kUnused) {

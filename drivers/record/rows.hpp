@@ -47,12 +47,19 @@ class RecordedRows : public hal::RowSource {
 
  protected:
   static constexpr std::size_t kUnused = static_cast<std::size_t>(-1);
+  enum class Step : std::uint8_t { kRow, kNoRow, kWait, kStop };
 
   explicit RecordedRows(const RowFileConfig& config);
   /// Of header_ those that were asked for, by name, else by number from 1 ("3"). Errors: a required
   /// column that is missing (the columns present are named), a name that stands twice. `file` is
   /// what errors call it.
   [[nodiscard]] Outcome<bool> choose_columns(const RowFileConfig& config, const std::string& file);
+  /// One step further in the record.
+  [[nodiscard]] virtual Step read_one(std::span<double> row) noexcept = 0;
+  /// Counts a row that is wrong, and stops there unless such are skipped; `text` as error_text().
+  Step bad_row(std::string text) noexcept;
+  /// Ends the reading.
+  Step stop(Errc reason, std::string text) noexcept;
   /// What is wrong with a row's time; "": nothing, and the row counts as delivered.
   [[nodiscard]] std::string check_time(std::span<const double> row);
 
@@ -60,15 +67,18 @@ class RecordedRows : public hal::RowSource {
   std::vector<std::string> units_;
   std::vector<std::string> names_;     // of a row's numbers
   std::vector<std::size_t> place_of_;  // header column -> place in the row, or kUnused
-  bool skip_bad_lines_;
   hal::RowHealth health_{};
-  std::string error_;
 
  private:
+  [[nodiscard]] Result<std::size_t> do_read(std::span<double> out) noexcept final;
   [[nodiscard]] std::size_t do_width() const noexcept final { return names_.size(); }
   [[nodiscard]] hal::RowHealth do_health() const noexcept final { return health_; }
   [[nodiscard]] bool is_near(double time) noexcept;
 
+  bool skip_bad_lines_;
+  bool stopped_{false};
+  Errc reason_{Errc::kEndOfStream};
+  std::string error_;
   std::vector<std::string> ignored_;
   std::vector<bool> present_;  // by place in the row
   std::string time_column_;

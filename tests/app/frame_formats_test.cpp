@@ -5,41 +5,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
-#include "tests/app/program.hpp"
-#include "tests/app/state_bytes.hpp"
+#include "tests/app/formats.hpp"
 
 namespace dampline::app {
 namespace {
 
 using testing::HasSubstr;
 
-class FrameFormats : public testing::Test {
+class FrameFormats : public FormatTest {
  protected:
   void SetUp() override {
     ASSERT_EQ(program_.run("simulate --duration 40 --seed 3 --quiet --out a.log").code, 0);
     expected_ = state_of("a.log");
     ASSERT_GT(expected_.size(), 10000U);
   }
-  StateBytes state_of(const std::string& source, const std::string& before = "") const {
-    const auto outcome =
-        program_.run("identify --quiet --no-report --force --out run " + source, before);
-    EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return sums_of(program_.read("run/state.dls"));
-  }
-  /// Runs a command of the shell in the folder; false: it failed, or there is no such program.
-  [[nodiscard]] bool shell(const std::string& command) const {
-    const std::string all = "cd '" + program_.path("").string() + "' && " + command + " 2> .shell";
-    return std::system(all.c_str()) == 0;  // NOLINT(cert-env33-c) oracles are programs
-  }
-  [[nodiscard]] bool python(const std::string& script) const {
-    program_.write("script.py", script);
-    return shell("/usr/bin/python3 script.py");
-  }
-  Program program_;
   StateBytes expected_;
 };
 

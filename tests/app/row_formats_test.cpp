@@ -4,41 +4,29 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 
-#include "tests/app/program.hpp"
-#include "tests/app/state_bytes.hpp"
+#include "tests/app/formats.hpp"
 
 namespace dampline::app {
 namespace {
 
-class RowFormats : public testing::Test {
+class RowFormats : public FormatTest {
  protected:
   void SetUp() override {
     ASSERT_EQ(program_.run("simulate --duration 40 --seed 3 --quiet --out a.csv").code, 0);
     expected_ = state_of("a.csv");
     ASSERT_GT(expected_.size(), 10000U);
   }
-  StateBytes state_of(const std::string& source, const std::string& before = "") const {
-    const auto outcome =
-        program_.run("identify --quiet --no-report --force --out run " + source, before);
-    EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return sums_of(program_.read("run/state.dls"));
-  }
-  /// `names` and `rows` of a.csv stand before the script. False: a module is missing.
+  /// `names` and `rows` of a.csv stand before the script.
   [[nodiscard]] bool python(const std::string& script) const {
-    program_.write("script.py", R"(
+    return FormatTest::python(R"(
 import csv
 lines = list(csv.reader(open('a.csv')))
 names, text = lines[0], lines[1:]
 rows = [[float(c) for c in l] for l in text]
 )" + script);
-    const std::string all =
-        "cd '" + program_.path("").string() + "' && /usr/bin/python3 script.py 2> .shell";
-    return std::system(all.c_str()) == 0;  // NOLINT(cert-env33-c) oracles are programs
   }
-  Program program_;
   StateBytes expected_;
 };
 

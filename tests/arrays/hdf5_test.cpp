@@ -3,23 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
-#include "tests/app/program.hpp"
-#include "tests/app/state_bytes.hpp"
+#include "tests/app/formats.hpp"
 
 namespace dampline::app {
 namespace {
 
 using testing::HasSubstr;
 
-class Hdf5 : public testing::Test {
+class Hdf5 : public FormatTest {
  protected:
   void SetUp() override {
     ASSERT_EQ(program_.run("simulate --duration 40 --seed 3 --quiet --out a.csv").code, 0);
-    program_.write("script.py", R"(
+    if (!python(R"(
 import csv, h5py, numpy as np
 lines = list(csv.reader(open('a.csv')))
 names, table = lines[0], np.array([[float(c) for c in l] for l in lines[1:]])
@@ -38,10 +36,7 @@ with h5py.File('table.h5', 'w') as f: f['table'] = table
 columns = lambda form: '[input.columns]\n' + ''.join('%s = "%s"\n' % (n, form(i, n)) for i, n in enumerate(names))
 open('deep.toml', 'w').write(columns(lambda i, n: 'run/' + n))
 open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
-)");
-    const std::string all =
-        "cd '" + program_.path("").string() + "' && /usr/bin/python3 script.py 2> .shell";
-    if (std::system(all.c_str()) != 0)  // NOLINT(cert-env33-c) the oracle is a program
+)"))
       GTEST_SKIP() << "python3-h5py is not installed";
     if (DAMPLINE_HAS_HDF5 == 0) {
       EXPECT_THAT(program_.run("identify a.h5").error, HasSubstr("built without"));
@@ -51,13 +46,6 @@ open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
       GTEST_SKIP() << "built without libhdf5-dev";
     }
   }
-  StateBytes state_of(const std::string& source, const std::string& before = "") const {
-    const auto outcome =
-        program_.run("identify --quiet --no-report --force --out run " + source, before);
-    EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return sums_of(program_.read("run/state.dls"));
-  }
-  Program program_;
 };
 
 TEST_F(Hdf5, GivesTheSameBytesAsTheTable) {
@@ -94,7 +82,7 @@ TEST_F(Hdf5, HoldsTheRowsOfMotion) {
   ASSERT_EQ(program_.run("motion a.csv --quiet --out m.npy").code, 0);
   const auto written = program_.run("motion a.csv --quiet --out m.h5");
   ASSERT_EQ(written.code, 0) << written.error;
-  program_.write("compare.py", R"(
+  EXPECT_TRUE(python(R"(
 import numpy as np
 import h5py
 f = h5py.File('m.h5')
@@ -102,11 +90,7 @@ read = lambda n: f[n][:]
 rows = np.load('m.npy')
 assert len(rows) > 1000
 for n in rows.dtype.names: assert np.array_equal(read(n), rows[n]), n
-)");
-  const std::string all =
-      "cd '" + program_.path("").string() + "' && /usr/bin/python3 compare.py 2> .shell";
-  EXPECT_EQ(std::system(all.c_str()), 0)  // NOLINT(cert-env33-c) the oracle is a program
-      << program_.read(".shell");
+)")) << program_.read(".shell");
 }
 
 }  // namespace

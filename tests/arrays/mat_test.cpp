@@ -5,22 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 
-#include "tests/app/program.hpp"
-#include "tests/app/state_bytes.hpp"
+#include "tests/app/formats.hpp"
 
 namespace dampline::app {
 namespace {
 
 using testing::HasSubstr;
 
-class Mat : public testing::Test {
+class Mat : public FormatTest {
  protected:
   void SetUp() override {
     ASSERT_EQ(program_.run("simulate --duration 40 --seed 3 --quiet --out a.csv").code, 0);
-    program_.write("script.py", R"(
+    if (!python(R"(
 import csv, numpy as np
 from scipy.io import savemat
 lines = list(csv.reader(open('a.csv')))
@@ -36,8 +34,8 @@ open('columns.f8', 'wb').write(array('d', table.T.flatten()).tobytes())
 columns = lambda form: '[input.columns]\n' + ''.join('%s = "%s"\n' % (n, form(i, n)) for i, n in enumerate(names))
 open('deep.toml', 'w').write(columns(lambda i, n: 'data.' + n))
 open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
-)");
-    if (!shell("/usr/bin/python3 script.py")) GTEST_SKIP() << "python3-scipy is not installed";
+)"))
+      GTEST_SKIP() << "python3-scipy is not installed";
     if (DAMPLINE_HAS_MATIO == 0) {
       EXPECT_THAT(program_.run("identify six.mat").error, HasSubstr("built without"));
       const auto refused = program_.run("motion no_record.csv --out m.mat");
@@ -46,17 +44,6 @@ open('table.toml', 'w').write(columns(lambda i, n: 'table_%d' % (i + 1)))
       GTEST_SKIP() << "built without libmatio-dev";
     }
   }
-  [[nodiscard]] bool shell(const std::string& command) const {
-    const std::string all = "cd '" + program_.path("").string() + "' && " + command + " 2> .shell";
-    return std::system(all.c_str()) == 0;  // NOLINT(cert-env33-c) oracles are programs
-  }
-  StateBytes state_of(const std::string& source, const std::string& before = "") {
-    const auto outcome =
-        program_.run("identify --quiet --no-report --force --out run " + source, before);
-    EXPECT_EQ(outcome.code, 0) << source << ": " << outcome.error;
-    return sums_of(program_.read("run/state.dls"));
-  }
-  Program program_;
 };
 
 TEST_F(Mat, GivesTheSameBytesAsTheTable) {
@@ -89,7 +76,7 @@ TEST_F(Mat, GivesTheSameBytesAsTheTable) {
 }
 
 TEST_F(Mat, ReadsNumbersOfEveryType) {
-  program_.write("kinds.py", R"(
+  ASSERT_TRUE(python(R"(
 import csv, numpy as np
 from scipy.io import savemat
 lines = list(csv.reader(open('a.csv')))
@@ -103,8 +90,7 @@ for sign, shift, kinds in ('i', 0, 'f4 f8 i1 i2 i4 i8'), ('u', 100, 'u1 u2 u4 u8
     for kind in kinds.split():
         typed = {n: c if 'time' in n else c.astype(kind) for n, c in columns.items()}
         savemat(kind + '.mat', typed, oned_as='column')
-)");
-  ASSERT_TRUE(shell("/usr/bin/python3 kinds.py")) << program_.read(".shell");
+)")) << program_.read(".shell");
   const StateBytes with_sign = state_of("i.csv");
   for (const char* file : {"f4.mat", "f8.mat", "i1.mat", "i2.mat", "i4.mat", "i8.mat"})
     EXPECT_EQ(state_of(file), with_sign) << file;
@@ -141,7 +127,7 @@ TEST_F(Mat, HoldsTheRowsOfMotion) {
   ASSERT_EQ(program_.run("motion a.csv --quiet --out m.npy").code, 0);
   const auto written = program_.run("motion a.csv --quiet --out m.mat");
   ASSERT_EQ(written.code, 0) << written.error;
-  program_.write("compare.py", R"(
+  EXPECT_TRUE(python(R"(
 import numpy as np
 from scipy.io import loadmat
 f = loadmat('m.mat')
@@ -149,11 +135,7 @@ read = lambda n: f[n][:, 0]
 rows = np.load('m.npy')
 assert len(rows) > 1000
 for n in rows.dtype.names: assert np.array_equal(read(n), rows[n]), n
-)");
-  const std::string all =
-      "cd '" + program_.path("").string() + "' && /usr/bin/python3 compare.py 2> .shell";
-  EXPECT_EQ(std::system(all.c_str()), 0)  // NOLINT(cert-env33-c) the oracle is a program
-      << program_.read(".shell");
+)")) << program_.read(".shell");
 }
 
 }  // namespace

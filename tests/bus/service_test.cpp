@@ -23,6 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using std::chrono::steady_clock;
 
 const std::string kProgram = DAMPLINE_BINARY_DIR "/dampline";
 
@@ -33,7 +34,6 @@ struct Look {
 };
 
 Look look_at(const GpioSim& gpio, unsigned line) {
-  using std::chrono::steady_clock;
   Look look;
   bool before = gpio.high(line);
   for (const auto end = steady_clock::now() + seconds{4}; steady_clock::now() < end;) {
@@ -113,10 +113,11 @@ class Manager {
   Manager(const Manager&) = delete;
   Manager& operator=(const Manager&) = delete;
   ~Manager() { ::close(file_); }
-  /// Listens for that long; how often the word came.
-  std::size_t hears(const std::string& word, seconds time) {
+  /// Listens for that long, or until the word came so often; how often it did.
+  std::size_t hears(const std::string& word, seconds time, std::size_t enough = 1'000) {
     std::size_t count = 0;
-    for (milliseconds passed{0}; passed < time; passed += milliseconds{10}) {
+    const auto end = steady_clock::now() + time;
+    while (count < enough && steady_clock::now() < end) {
       std::this_thread::sleep_for(milliseconds{10});
       std::array<char, 1024> text{};
       for (ssize_t bytes = 0; (bytes = ::recv(file_, text.data(), text.size(), 0)) > 0;) {
@@ -142,13 +143,13 @@ TEST(Service, TellsItsManager) {
   const std::string socket = live.folder / "manager";
   Manager manager{socket};
   Child program{under_manager(live, socket), live.folder.path()};
-  EXPECT_EQ(manager.hears("READY=1", seconds{2}), 1U);
+  EXPECT_EQ(manager.hears("READY=1", seconds{20}, 1), 1U);
   // A quarter of 2 s, with no frame at all: a lost signal is waited out.
   const std::size_t fed = manager.hears("WATCHDOG=1", seconds{5});
   EXPECT_GE(fed, 6U);
   EXPECT_LE(fed, 11U);
   program.signal(SIGHUP);
-  EXPECT_EQ(manager.hears("RELOADING=1", seconds{2}), 1U);
+  EXPECT_EQ(manager.hears("RELOADING=1", seconds{10}, 1), 1U);
   // A program that stands still does not feed: the manager would start it anew.
   program.signal(SIGSTOP);
   static_cast<void>(manager.hears("WATCHDOG=1", seconds{1}));
@@ -159,7 +160,7 @@ TEST(Service, TellsItsManager) {
                live.folder.path()};
   EXPECT_GE(manager.hears("STATUS=", seconds{25}), 2U);
   program.signal(SIGTERM);
-  EXPECT_EQ(manager.hears("STOPPING=1", seconds{5}), 1U);
+  EXPECT_EQ(manager.hears("STOPPING=1", seconds{10}, 1), 1U);
   EXPECT_EQ(program.wait(seconds{60}).status, 0) << program.error();
 }
 
