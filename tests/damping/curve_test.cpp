@@ -227,6 +227,11 @@ TEST(Summary, FindsAViscousPartAndNoneWhereThereIsNone) {
   const Snapshot with = summary_of(*statistics_of({}, 14e-3, 6, 1.5));
   EXPECT_NEAR(with.viscous_nspm.value / (1.5 * kMassKg), 1.0, 0.06);
   EXPECT_NEAR(with.coulomb_with_viscous_n.value / (0.2 * kMassKg), 1.0, 0.01);
+  EXPECT_NEAR(with.stiffness_with_viscous_npm.value / (kStiffness * kMassKg), 1.0, 0.01);
+  EXPECT_GT(with.stiffness_with_viscous_npm.std, 0.003 * kStiffness * kMassKg);
+  EXPECT_NEAR(with.law_width_with_viscous_mps.value / kTrueWidthMps, 1.0, 0.15);
+  EXPECT_LT(with.nmse_with_viscous, with.nmse);
+  EXPECT_LT(with.held_out_nmse_with_viscous, with.held_out_nmse);
   const Snapshot without = summary_of(*statistics_of({}, 14e-3, 7));
   EXPECT_LT(std::abs(without.viscous_nspm.value), 3.0 * without.viscous_nspm.std);
 }

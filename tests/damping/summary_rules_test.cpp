@@ -163,6 +163,30 @@ TEST(SummaryRules, ALevelAloneNeedsFourEntriesToo) {
   }
 }
 
+TEST(SummaryRules, HandsOnWhatTheStatisticsSay) {
+  const auto statistics = std::make_unique<Statistics>(of_a_ride());
+  StatisticsHeader& header = statistics->header;
+  header.noise_mps2 = 0.031;
+  header.newest_tick = 123'456;
+  header.counts.samples = 77;
+  header.counts.gaps = 3;
+  for (std::size_t i = 0; i < kCurveSegments; ++i) {
+    header.velocity.positive[i] = 100 + i;
+    header.velocity.negative[i] = 200 + i;
+  }
+  const Snapshot s = summarise(*statistics, {.moving_mass_kg = 1000.0});
+  EXPECT_EQ(s.noise_mps2, 0.031);
+  EXPECT_EQ(s.tick, 123'456);
+  EXPECT_EQ(s.counts.samples, 77U);
+  EXPECT_EQ(s.counts.gaps, 3U);
+  EXPECT_EQ(s.blocks_in_estimate, statistics->total.blocks);
+  for (std::size_t i = 0; i < kCurveSegments; ++i) {
+    EXPECT_EQ(s.curve[i].velocity_mps, header.curve_nodes_mps[i]);
+    EXPECT_EQ(s.curve[i].samples, 100 + i);
+    EXPECT_EQ(s.samples_negative[i], 200 + i);
+  }
+}
+
 TEST(SummaryRules, ExcitationIsTheShareOfBlocksThatMoved) {
   const auto statistics = std::make_unique<Statistics>(of_a_ride());
   statistics->header.counts.blocks = 10;

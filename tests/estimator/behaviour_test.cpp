@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -60,6 +61,42 @@ TEST_P(MotionAtRate, CarriesTheAccelerationsOfItsOwnSample) {
   EXPECT_GT(motions, 2000);
 }
 INSTANTIATE_TEST_SUITE_P(Rates, MotionAtRate, testing::Values(150.0, 300.0, 400.0));
+
+// Motion of a sample is told later than its velocity is counted.
+TEST(Estimator, CountsVelocitiesByTheNearestNodeOfTheCurve) {
+  constexpr std::int64_t kBegin = 2400;
+  constexpr std::int64_t kEnd = 9000;
+  const auto counting = std::make_unique<Estimator>(EstimatorConfig{});
+  const auto telling = std::make_unique<Estimator>(EstimatorConfig{});
+  const std::int64_t latency = std::lround(300.0 * counting->velocity_latency_s());
+  VelocityCounts expected;
+  for (std::int64_t i = 0; i < kEnd + 600; ++i) {
+    const Sample& sample = laden_record()[static_cast<std::size_t>(i)];
+    if (i == kBegin) counting->clear_statistics();
+    if (i < kEnd) counting->update(sample);
+    const UpdateResult result = telling->update(sample);
+    const std::int64_t tick = result.motion.tick + latency;
+    if (!result.has_motion || result.motion.still || tick < kBegin || tick >= kEnd) continue;
+    const double speed = std::abs(result.motion.velocity_mps);
+    const auto nearest = std::min_element(
+        kDefaultCurveNodesMps.begin(), kDefaultCurveNodesMps.end(),
+        [&](double a, double b) { return std::abs(a - speed) < std::abs(b - speed); });
+    const auto node = static_cast<std::size_t>(nearest - kDefaultCurveNodesMps.begin());
+    ++(result.motion.velocity_mps > 0.0 ? expected.positive : expected.negative)[node];
+    ++expected.moving;
+    expected.sticking += speed < 2e-3 ? 1 : 0;
+    expected.sum_squares += speed * speed;
+  }
+  const auto counted = std::make_unique<Statistics>();
+  counting->export_statistics(*counted);
+  const VelocityCounts& velocity = counted->header.velocity;
+  EXPECT_EQ(velocity.moving, 6600U);
+  EXPECT_EQ(velocity.moving, expected.moving);
+  EXPECT_EQ(velocity.positive, expected.positive);
+  EXPECT_EQ(velocity.negative, expected.negative);
+  EXPECT_EQ(velocity.sticking, expected.sticking);
+  EXPECT_NEAR(velocity.sum_squares / expected.sum_squares, 1.0, 1e-12);
+}
 
 TEST(Estimator, TellsStandstillFromMotion) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 99);
@@ -228,6 +265,25 @@ TEST(Estimator, RefusesEachSettingThatIsOutOfRange) {
     c.memory = Memory::kWindow;
     c.memory_s = nan;
   }));
+}
+
+TEST(Estimator, TakesSettingsUpToTheirLimits) {
+  const auto taken = [](const EstimatorConfig& config) { return Estimator::check(config).ok(); };
+  EXPECT_TRUE(taken({.sample_rate_hz = 149.85}));
+  EXPECT_TRUE(taken({.sample_rate_hz = 400.0}));
+  EXPECT_TRUE(taken({.velocity_corner_hz = 0.7}));
+  EXPECT_TRUE(taken({.velocity_corner_hz = 1.0}));
+  EXPECT_TRUE(taken({.anti_alias = {.corner_hz = 0.0, .order = 1}}));
+  EXPECT_TRUE(taken({.anti_alias = {.corner_hz = 100.0, .order = 8}}));
+  EXPECT_TRUE(taken({.memory = Memory::kWindow, .memory_s = 2.0}));
+  EXPECT_TRUE(taken({.memory = Memory::kForgetting, .memory_s = 2.0}));
+  EXPECT_TRUE(taken({.memory = Memory::kInfinite, .memory_s = 0.0}));
+  EXPECT_FALSE(taken({.memory = Memory::kWindow, .memory_s = 1.999}));
+  EstimatorConfig nodes;
+  nodes.curve_nodes_mps.back() = 9.99;
+  EXPECT_TRUE(taken(nodes));
+  nodes.curve_nodes_mps.back() = 10.0;
+  EXPECT_FALSE(taken(nodes));
 }
 
 TEST(Estimator, RefusesAnInfiniteMassOrMemory) {
