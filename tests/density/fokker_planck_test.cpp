@@ -209,11 +209,163 @@ TEST(FokkerPlanck, TwoHalvesMergeToTheWhole) {
   // The periodograms that the cut goes through are lost.
   EXPECT_NEAR(a.weak.level_n.value / b.weak.level_n.value, 1.0, 0.01);
   EXPECT_NEAR(a.weak.verdict[Reason::kShortRecord].size, 200.0, 1e-6) << "s, and all of them count";
-  FokkerPlanckConfig other = config;
-  other.velocity_mps.high = 0.2;
-  const auto refused = first.merge(FokkerPlanck{other});
-  ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error(), Errc::kMismatch);
+  EXPECT_NEAR(first.velocity_rms_mps() / whole.velocity_rms_mps(), 1.0, 1e-12);
+  for (const Reason reason :
+       {Reason::kNoMotion, Reason::kConstantChannel, Reason::kRangeClips, Reason::kDependence}) {
+    const Finding& merged_finding = a.paper.verdict[reason];
+    EXPECT_NEAR(merged_finding.size, b.paper.verdict[reason].size, 1e-4) << text(reason);
+    EXPECT_EQ(merged_finding.checked, b.paper.verdict[reason].checked) << text(reason);
+  }
+}
+
+TEST(FokkerPlanck, MergesWhatHasTheSameSettings) {
+  const FokkerPlanckConfig config{.velocity_mps = {.low = -0.1, .high = 0.1},
+                                  .deflection_m = {.low = -5e-3, .high = 5e-3}};
+  FokkerPlanck first{config};
+  FokkerPlanck still{config};
+  still.update({.tick = 1, .still = true});
+  still.update({.tick = 2, .velocity_mps = std::numeric_limits<double>::quiet_NaN()});
+  ASSERT_TRUE(first.merge(still).ok());
+  EXPECT_EQ(first.still(), 1U);
+  EXPECT_EQ(first.not_finite(), 1U);
+  for (int setting = 0; setting < 6; ++setting) {
+    FokkerPlanckConfig other = config;
+    if (setting == 0) other.velocity_mps.high = 0.2;
+    if (setting == 1) other.deflection_m.high = 6e-3;
+    if (setting == 2) other.sample_rate_hz = 200.0;
+    if (setting == 3) other.curve_nodes_mps[4] += 1e-4;
+    if (setting == 4) other.memory_s = 40.0;
+    if (setting == 5) other.anti_alias_corner_hz = 50.0;
+    const auto refused = first.merge(FokkerPlanck{other});
+    ASSERT_FALSE(refused.ok()) << setting;
+    EXPECT_EQ(refused.error(), Errc::kMismatch);
+  }
+}
+
+/// White motion from tick `first` on.
+void ride_white(FokkerPlanck& run, std::uint64_t seed, int samples, std::int64_t first) {
+  sim::WhiteInput source{{.seed = seed}};
+  for (int i = 0; i < samples; ++i) {
+    Motion motion = source.next();
+    motion.tick = first + i;
+    run.update(motion);
+  }
+}
+
+constexpr std::array kOfAnyMemory{Reason::kNoMotion,      Reason::kConstantChannel,
+                                  Reason::kShortRecord,   Reason::kRangeClips,
+                                  Reason::kColouredInput, Reason::kDependence};
+
+void expect_same_answer(const FokkerPlanck& one, const FokkerPlanck& other, double tolerance) {
+  const auto a = one.estimates(kMassKg, kStiffnessNpm);
+  const auto b = other.estimates(kMassKg, kStiffnessNpm);
+  ASSERT_TRUE(a.known_input.verdict.has_number);
+  EXPECT_NEAR(one.velocity_rms_mps() / other.velocity_rms_mps(), 1.0, tolerance);
+  EXPECT_NEAR(a.input_level.value / b.input_level.value, 1.0, tolerance);
+  EXPECT_NEAR(a.known_input.level_n.value / b.known_input.level_n.value, 1.0, tolerance);
+  EXPECT_NEAR(a.weak.level_n.value / b.weak.level_n.value, 1.0, tolerance);
+  EXPECT_NEAR(a.paper.level_n.value / b.paper.level_n.value, 1.0, tolerance);
+  for (const Reason reason : kOfAnyMemory) {
+    const Finding& finding = b.paper.verdict[reason];
+    EXPECT_NEAR(a.paper.verdict[reason].size, finding.size, tolerance * (1.0 + finding.size))
+        << text(reason);
+  }
+}
+
+constexpr FokkerPlanckConfig kForgetting{.velocity_mps = {.low = -0.1, .high = 0.1},
+                                         .deflection_m = {.low = -5e-3, .high = 5e-3},
+                                         .memory_s = 40.0};
+
+// Both are seen at their own newest sample, so that it is all one which takes in which.
+TEST(FokkerPlanck, MergesRecordsThatForgetEitherWay) {
+  FokkerPlanck early{kForgetting};
+  FokkerPlanck late{kForgetting};
+  ride_white(early, 8, 30'000, 0);
+  ride_white(late, 9, 60'000, 30'000);
+  FokkerPlanck other = late;
+  const double rms_mps =
+      std::sqrt((std::pow(early.velocity_rms_mps(), 2) * (1.0 - std::exp(-100.0 / 40.0)) +
+                 std::pow(late.velocity_rms_mps(), 2) * (1.0 - std::exp(-200.0 / 40.0))) /
+                (2.0 - std::exp(-100.0 / 40.0) - std::exp(-200.0 / 40.0)));
+  ASSERT_TRUE(other.merge(early).ok());
+  ASSERT_TRUE(early.merge(late).ok());
+  EXPECT_NEAR(early.velocity_rms_mps() / rms_mps, 1.0, 1e-9);
+  expect_same_answer(early, other, 1e-7);
+}
+
+// Weights grow by the block, and are scaled back every 208 memories.
+TEST(FokkerPlanck, ForgetsAlikeForever) {
+  FokkerPlanck fresh{kForgetting};
+  FokkerPlanck old{kForgetting};
+  constexpr std::int64_t kBlocks = 208 * 20 + 96;
+  for (std::int64_t block = 0; block < kBlocks; ++block)
+    old.update({.tick = 600 * block,
+                .deflection_m = 3e-3,
+                .velocity_mps = block % 2 == 0 ? 0.09 : -0.09,
+                .frame_mps2 = 0.3,
+                .relative_mps2 = 2.0});
+  for (FokkerPlanck* run : {&fresh, &old}) ride_white(*run, 8, 400 * 600, 600 * kBlocks);
+  expect_same_answer(fresh, old, 1e-5);
+  for (std::size_t line = 0; line < InputSpectrum::kLines; ++line)
+    EXPECT_NEAR(fresh.input_spectrum(line) / old.input_spectrum(line), 1.0, 1e-5) << line;
+}
+
+TEST(FokkerPlanck, ItsSpectrumIsThatOfItsInput) {
+  FokkerPlanck run{{}};
+  InputSpectrum spectrum{300.0};
+  InputSpectrum::Sums sums;
+  sim::WhiteInput source{{.seed = 3}};
+  for (int i = 0; i < 20'000; ++i) {
+    const Motion motion = source.next();
+    run.update(motion);
+    spectrum.update(motion.input_mps2(), 1.0, sums);
+  }
+  for (std::size_t line = 0; line < InputSpectrum::kLines; ++line) {
+    EXPECT_EQ(run.spectrum_frequency_hz(line), spectrum.frequency_hz(line));
+    EXPECT_NEAR(run.input_spectrum(line) / (sums.power[line] / sums.weight), 1.0, 1e-9) << line;
+  }
+  EXPECT_EQ(FokkerPlanck{{}}.input_spectrum(3), 0.0);
+}
+
+// A transform is of 512 samples in a row.
+TEST(FokkerPlanck, NoTransformGoesAcrossAGap) {
+  for (const std::int64_t gap : {0, 1}) {
+    FokkerPlanck run{{}};
+    ride_white(run, 1, 500, 0);
+    ride_white(run, 2, 500, 500 + gap);
+    EXPECT_EQ(run.estimates(kMassKg, kStiffnessNpm).input_level.value > 0.0, gap == 0) << gap;
+  }
+}
+
+TEST(FokkerPlanck, LearnsOneRangeForADensityAndTheJointOne) {
+  const auto run = white_run({.seed = 4}, 30.0);
+  EXPECT_NEAR(run->joint().x_axis().high() / run->deflections().axis().high(), 1.0, 1e-12);
+  EXPECT_NEAR(run->joint().y_axis().high() / run->velocities().axis().high(), 1.0, 1e-12);
+  EXPECT_EQ(run->joint().samples(), 9000U);
+}
+
+// Friction of both signs is mixed within 1.5 ms of a reversal: at 6 m/s^2 within 9 mm/s.
+TEST(FokkerPlanck, LeavesOutWhatIsBesideAReversalWhereTheInputIsKnown) {
+  const auto samples_of = [](double relative_mps2, double corner_hz) {
+    FokkerPlanck run{{.anti_alias_corner_hz = corner_hz}};
+    for (std::int64_t tick = 0; tick < 20'000; ++tick) {
+      const double speed = (tick % 2 == 0 ? 5e-3 : 20e-3);
+      run.update({.tick = tick,
+                  .deflection_m = 1e-3 * std::sin(0.7 * static_cast<double>(tick)),
+                  .velocity_mps = tick % 4 < 2 ? speed : -speed,
+                  .frame_mps2 = std::sin(0.2 * static_cast<double>(tick)),
+                  .relative_mps2 = relative_mps2});
+    }
+    double samples = 0.0;
+    for (const CurvePoint& point : run.estimates(kMassKg, kStiffnessNpm).known_input.curve)
+      samples += static_cast<double>(point.samples);
+    return samples;
+  };
+  EXPECT_NEAR(samples_of(3.3, 100.0), 20'000.0, 20.0);
+  EXPECT_NEAR(samples_of(3.4, 100.0), 10'000.0, 20.0);
+  EXPECT_NEAR(samples_of(-3.4, 100.0), 10'000.0, 20.0);
+  EXPECT_NEAR(samples_of(3.4, 200.0), 20'000.0, 20.0);
+  EXPECT_NEAR(samples_of(6.0, 0.0), 20'000.0, 20.0) << "no filter, nothing mixed";
 }
 
 TEST(FokkerPlanck, ChecksItsConfiguration) {
@@ -226,6 +378,19 @@ TEST(FokkerPlanck, ChecksItsConfiguration) {
   nodes.curve_nodes_mps[3] = nodes.curve_nodes_mps[2];
   EXPECT_FALSE(FokkerPlanck::check(nodes).ok());
   EXPECT_FALSE(FokkerPlanck::check({.memory_s = std::numeric_limits<double>::quiet_NaN()}).ok());
+  EXPECT_TRUE(FokkerPlanck::check({.sample_rate_hz = 150.0}).ok());
+  EXPECT_TRUE(FokkerPlanck::check({.sample_rate_hz = 400.0}).ok());
+  EXPECT_FALSE(FokkerPlanck::check({.sample_rate_hz = 400.1}).ok());
+  EXPECT_FALSE(FokkerPlanck::check({.deflection_m = {}}).ok());
+  EXPECT_TRUE(FokkerPlanck::check({.memory_s = 2.0}).ok());
+  EXPECT_TRUE(FokkerPlanck::check({.anti_alias_corner_hz = 0.0}).ok());
+  EXPECT_FALSE(
+      FokkerPlanck::check({.anti_alias_corner_hz = std::numeric_limits<double>::infinity()}).ok());
+  nodes = {};
+  nodes.curve_nodes_mps[7] = 10.0;
+  EXPECT_FALSE(FokkerPlanck::check(nodes).ok());
+  nodes.curve_nodes_mps[0] = 0.0;
+  EXPECT_FALSE(FokkerPlanck::check(nodes).ok());
 }
 
 }  // namespace

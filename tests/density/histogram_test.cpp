@@ -179,5 +179,39 @@ TEST(Histogram, ForgetsAlikeForever) {
   EXPECT_NEAR(integral(h), 1.0, 1e-12);
 }
 
+// What lies outside is forgotten with the rest.
+TEST(Histogram, ForgetsWhatIsOutsideAlikeForever) {
+  Fine h{given(-1.0, 1.0, 10.0)};
+  for (int i = 0; i < 30'000; ++i) h.update(static_cast<double>(i % 3 - 1) * 2.0);
+  const double older = std::exp(-0.1);
+  const double all = 1.0 + older + older * older;
+  EXPECT_NEAR(h.share_above(), 1.0 / all, 1e-9);
+  EXPECT_NEAR(h.share(32), older / all, 1e-9);
+  EXPECT_NEAR(h.share_below(), older * older / all, 1e-9);
+}
+
+// Both are seen at their own newest sample.
+TEST(Histogram, MergesWhatForgetsEitherWay) {
+  Fine brief{given(-1.0, 1.0, 100.0)};
+  Fine lasting{given(-1.0, 1.0, 100.0)};
+  for (const double x : normal_numbers(6, 150)) brief.update(x);
+  for (const double x : normal_numbers(7, 2000)) lasting.update(x + 0.5);
+  Fine other = lasting;
+  ASSERT_TRUE(other.merge(brief).ok());
+  ASSERT_TRUE(brief.merge(lasting).ok());
+  EXPECT_EQ(brief.samples(), 2150U);
+  EXPECT_NEAR(integral(brief), 1.0, 1e-12);
+  EXPECT_NEAR(brief.share_below(), other.share_below(), 1e-12);
+  EXPECT_NEAR(brief.share_above(), other.share_above(), 1e-12);
+  double mass = 0.0;
+  for (std::size_t b = 0; b < 64; ++b) {
+    EXPECT_NEAR(brief.share(b), other.share(b), 1e-12);
+    EXPECT_NEAR(brief.mass(b), other.mass(b), 1e-9);
+    mass += brief.mass(b);
+  }
+  const double effective = (2.0 - std::exp(-1.5) - std::exp(-20.0)) / (1.0 - std::exp(-0.01));
+  EXPECT_NEAR(mass, effective * (1.0 - brief.share_outside()), 1e-6 * effective);
+}
+
 }  // namespace
 }  // namespace dampline

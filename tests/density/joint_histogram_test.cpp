@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "sim_hw/noise.hpp"
@@ -80,6 +81,51 @@ TEST(JointHistogram, TwoHalvesMergeToTheWholeExactly) {
   EXPECT_EQ(refused.error(), Errc::kMismatch);
 }
 
+// The weights are scaled back every 208 memories; what lies outside is forgotten with the rest.
+TEST(JointHistogram, ForgetsAlikeForever) {
+  Joint joint{given(10.0)};
+  for (int i = 0; i < 30'000; ++i) {
+    if (i % 3 == 0) joint.update(0.1, 0.1);
+    if (i % 3 == 1) joint.update(9.0, 0.1);
+    if (i % 3 == 2) joint.update(-0.1, 0.1);
+  }
+  const double older = std::exp(-0.1);
+  const double all = 1.0 + older + older * older;
+  EXPECT_NEAR(joint.share(7, 16), 1.0 / all, 1e-9);
+  EXPECT_NEAR(joint.share_outside(), older / all, 1e-9);
+  EXPECT_NEAR(joint.share(8, 16), older * older / all, 1e-9);
+}
+
+// Both are seen at their own newest sample.
+TEST(JointHistogram, MergesWhatForgetsEitherWay) {
+  Joint brief{given(100.0)};
+  Joint lasting{given(100.0)};
+  fill(brief, 0.3, 150, 5);
+  fill(lasting, -0.3, 2000, 6);
+  Joint other = lasting;
+  ASSERT_TRUE(other.merge(brief).ok());
+  ASSERT_TRUE(brief.merge(lasting).ok());
+  EXPECT_EQ(brief.samples(), 2150U);
+  EXPECT_NEAR(integral(brief), 1.0, 1e-12);
+  EXPECT_NEAR(brief.share_outside(), other.share_outside(), 1e-12);
+  for (std::size_t i = 0; i < 16; ++i)
+    for (std::size_t j = 0; j < 32; ++j) EXPECT_NEAR(brief.share(i, j), other.share(i, j), 1e-12);
+}
+
+TEST(JointHistogram, PutsASampleWhereItBelongs) {
+  Joint joint{given()};
+  for (const auto& [x, y, i, j] :
+       {std::tuple{-2.0, -4.0, 0U, 0U}, std::tuple{1.99, 3.99, 15U, 31U},
+        std::tuple{0.0, -0.01, 8U, 15U}, std::tuple{-0.3, 0.0, 6U, 16U}}) {
+    joint.update(x, y);
+    EXPECT_GT(joint.share(i, j), 0.0) << x << " " << y;
+  }
+  for (const auto& [x, y] : {std::pair{2.0, 0.0}, {-2.01, 0.0}, {0.0, 4.0}, {0.0, -4.01}})
+    joint.update(x, y);
+  EXPECT_EQ(joint.share_outside(), 0.5);
+  EXPECT_EQ(joint.samples(), 8U);
+}
+
 TEST(JointHistogram, LearnsBothRanges) {
   Joint learner{{.x = {.resolution = 1e-5, .warm_up_samples = 2'000},
                  .y = {.resolution = 1e-3, .warm_up_samples = 2'000}}};
@@ -112,6 +158,34 @@ TEST(Dependence, IsThatOfCorrelatedNumbers) {
   const Dependence some = dependence(dependent, 400'000.0);
   ASSERT_TRUE(some.known);
   EXPECT_NEAR(some.size, 0.4 / std::sqrt(1.0 - 0.16), 0.04);
+}
+
+/// Three by three cells, each row and column a third, with so much on the diagonal beyond a ninth.
+Joint three_by_three(int on_diagonal, int beside, int columns = 3) {
+  Joint joint{given()};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < columns; ++j)
+      for (int n = i == j ? on_diagonal : beside; n > 0; --n)
+        joint.update(0.5 * i - 0.4, 0.5 * j - 0.4);
+  return joint;
+}
+
+// sum (o - e)^2 / e over nine cells of a ninth, less nine over the independent samples.
+TEST(Dependence, IsChiSquaresRootAboveChance) {
+  const Joint joint = three_by_three(20, 10);
+  const double excess = 20.0 / 120.0 - 1.0 / 9.0;
+  const double lack = 10.0 / 120.0 - 1.0 / 9.0;
+  const double chi2 = 9.0 * (3.0 * excess * excess + 6.0 * lack * lack);
+  EXPECT_NEAR(dependence(joint, 1e4).size, std::sqrt(chi2 - 9.0 / 1e4), 1e-12);
+  EXPECT_NEAR(dependence(joint, 120.0).size, std::sqrt(std::max(chi2 - 9.0 / 120.0, 0.0)), 1e-12);
+  EXPECT_EQ(dependence(three_by_three(10, 10), 1e4).size, 0.0);
+}
+
+// Nine cells, in which five are expected.
+TEST(Dependence, IsKnownFromNineCellsOfFiveOn) {
+  EXPECT_TRUE(dependence(three_by_three(10, 10), 45.1).known);
+  EXPECT_FALSE(dependence(three_by_three(10, 10), 44.9).known);
+  EXPECT_FALSE(dependence(three_by_three(10, 10, 2), 1e6).known) << "six";
 }
 
 TEST(Dependence, IsUnknownOfFewSamples) {

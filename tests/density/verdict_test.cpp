@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -150,6 +151,90 @@ TEST(Verdict, OfInputThatGrows) {
   EXPECT_NEAR(found.weak.verdict[Reason::kNonStationary].size, std::log(8.5),
               0.4);  // the power of v goes with the square
   EXPECT_TRUE(found.known_input.verdict.trusted);
+}
+
+// What each method depends on, and how much of it is borne.
+TEST(Verdict, ChecksWhatAMethodDependsOn) {
+  const auto found = changed_run([](Motion&) {});
+  const auto limit_of = [](const MethodResult& method, Reason reason) {
+    const Finding& finding = method.verdict[reason];
+    return finding.checked ? finding.limit : -1.0;
+  };
+  for (const MethodResult* method : {&found.paper, &found.weak, &found.known_input}) {
+    EXPECT_EQ(limit_of(*method, Reason::kNoMotion), 0.5e-3);
+    EXPECT_EQ(limit_of(*method, Reason::kConstantChannel), 1e-3);
+    EXPECT_EQ(limit_of(*method, Reason::kShortRecord), 30.0);
+    EXPECT_EQ(limit_of(*method, Reason::kNotSolvable), 0.5);
+    const bool is_paper = method == &found.paper;
+    const bool is_known = method == &found.known_input;
+    EXPECT_EQ(limit_of(*method, Reason::kNarrowMotion), is_paper ? -1.0 : 2.0);
+    EXPECT_EQ(limit_of(*method, Reason::kRangeClips), is_paper ? 0.02 : -1.0);
+    EXPECT_EQ(limit_of(*method, Reason::kColouredInput), is_known ? -1.0 : 2.5);
+    EXPECT_EQ(limit_of(*method, Reason::kDependence), is_paper ? 0.2 : -1.0);
+    EXPECT_EQ(limit_of(*method, Reason::kBentCurve), is_known ? 0.13 : -1.0);
+    EXPECT_EQ(method->verdict[Reason::kNonStationary].checked, !is_known);
+  }
+  const Finding& stationary = found.weak.verdict[Reason::kNonStationary];
+  EXPECT_GT(stationary.limit, 0.3);
+  EXPECT_LT(stationary.limit, 1.2);
+  EXPECT_EQ(stationary.limit, found.paper.verdict[Reason::kNonStationary].limit);
+}
+
+// Of sines: the root of half their squared amplitude; a constant beside them does not count.
+TEST(Verdict, MeasuresMotionAndChange) {
+  FokkerPlanck run{{}};
+  for (std::int64_t tick = 0; tick < 30'000; ++tick) {
+    const double phase = 0.1 * 3.14159265358979 * static_cast<double>(tick);
+    run.update({.tick = tick,
+                .deflection_m = 1e-3 * std::cos(phase),
+                .velocity_mps = 8e-3 * std::sin(phase),
+                .frame_mps2 = 9.81 + 0.4 * std::sin(phase),
+                .relative_mps2 = 3.0 + 0.2 * std::sin(phase)});
+  }
+  EXPECT_NEAR(run.velocity_rms_mps(), 8e-3 * std::sqrt(0.5), 1e-9);
+  const auto& verdict = run.estimates(kMassKg, kStiffnessNpm).weak.verdict;
+  EXPECT_NEAR(verdict[Reason::kNoMotion].size, 8e-3 * std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(verdict[Reason::kConstantChannel].size, 0.4 * std::sqrt(0.5), 1e-6)
+      << "the input's is 0.6";
+  EXPECT_NEAR(verdict[Reason::kShortRecord].size, 100.0, 1e-9);
+}
+
+/// Friction of this level from 5.5 to 8 mm/s and of `fast` beyond 14.5 mm/s, so many samples there.
+Finding bent_curve(double slow_mps2, double fast_mps2, int fast_samples = 2000,
+                   double deflection_m = 0.0) {
+  FokkerPlanck run{{}};
+  std::int64_t tick = 0;
+  const auto give_side = [&](double speed_mps, double level_mps2, int samples) {
+    for (int i = 0; i < 2 * samples; ++i, ++tick) {
+      const double sign = i % 2 == 0 ? 1.0 : -1.0;
+      run.update({.tick = tick,
+                  .deflection_m = sign * deflection_m,
+                  .velocity_mps = sign * speed_mps,
+                  .frame_mps2 = -0.5 * sign * level_mps2 + 0.1,
+                  .relative_mps2 = 0.3});
+    }
+  };
+  for (const double speed_mps : {1e-3, 2e-3, 4e-3}) give_side(speed_mps, 0.1, 2000);
+  give_side(7e-3, slow_mps2, 2000);
+  give_side(9e-3, 0.9, 2000);
+  give_side(13e-3, 0.9, 2000);
+  for (const double speed_mps : {15e-3, 20e-3, 30e-3})
+    give_side(speed_mps, fast_mps2, fast_samples / 3);
+  return run.estimates(kMassKg, kStiffnessNpm).known_input.verdict[Reason::kBentCurve];
+}
+
+// 1 - slow / fast, with what the spring takes in both.
+TEST(Verdict, OfACurveThatFallsTowardsSlowMotion) {
+  EXPECT_NEAR(bent_curve(0.40, 0.45).size, 1.0 - 0.40 / 0.45, 1e-9);
+  EXPECT_FALSE(bent_curve(0.40, 0.45).violated);
+  EXPECT_NEAR(bent_curve(0.38, 0.45).size, 1.0 - 0.38 / 0.45, 1e-9);
+  EXPECT_TRUE(bent_curve(0.38, 0.45).violated);
+  EXPECT_NEAR(bent_curve(0.5, 0.4).size, -0.25, 1e-9);
+  const double spring_mps2 = 2.0 * kStiffnessNpm / kMassKg * 1e-4;
+  EXPECT_NEAR(bent_curve(0.4, 0.5, 2000, 1e-4).size,
+              1.0 - (0.4 - spring_mps2) / (0.5 - spring_mps2), 1e-9);
+  EXPECT_TRUE(bent_curve(0.3, 0.45, 303).checked);
+  EXPECT_FALSE(bent_curve(0.3, 0.45, 297).checked) << "three hundred a side tell a force";
 }
 
 TEST(Verdict, HasWordsForEveryReason) {
