@@ -196,6 +196,96 @@ TEST(NpyReader, ATimeThatGoesBackIsNamedByItsRow) {
   EXPECT_THAT(out.error, HasSubstr("row 3: found t = 2, expected a time after 2"));
 }
 
+TEST(NpyReader, GoesOnBehindATimeThatGoesBackWhereItMay) {
+  const TemporaryFile file{array_of("[('t', '<f8')]", "(4,)", doubles({1, 2, 2, 3})), ".npy"};
+  auto rows = open_rows(
+      {.path = file.path(), .required = {"t"}, .time_column = "t", .skip_bad_lines = true});
+  std::array<double, 10> some{};
+  ASSERT_EQ(rows.value()->read(some).value(), 3U);
+  EXPECT_EQ(some[2], 3.0);
+  EXPECT_EQ(rows.value()->health().malformed, 1U);
+  EXPECT_EQ(rows.value()->health().line, 4U);
+  EXPECT_EQ(rows.value()->read(some).error(), Errc::kEndOfStream);
+  EXPECT_FALSE(rows.value()->health().truncated);
+}
+
+TEST(NpyReader, GivesWholeRowsOfTheColumnsThatAreAskedFor) {
+  const std::string type = "[('t', '<f8'), ('a', '<f4'), ('b', '<i2')]";
+  std::string data;
+  for (int i = 0; i < 5; ++i)
+    data += stored(1.0 * i) + stored(10.0F * static_cast<float>(i)) +
+            stored(static_cast<std::int16_t>(-i));
+  const TemporaryFile file{array_of(type, "(5,)", data), ".npy"};
+  auto rows = open_rows(
+      {.path = file.path(), .required = {"b", "t"}, .optional = {"none"}, .time_column = "t"});
+  ASSERT_TRUE(rows.ok()) << rows.error_text();
+  std::array<double, 8> some{};  // of three columns two rows
+  ASSERT_EQ(rows.value()->read(some).value(), 2U);
+  EXPECT_THAT(std::vector<double>(some.begin(), some.begin() + 2), ElementsAre(0.0, 0.0));
+  EXPECT_TRUE(std::isnan(some[2]));
+  EXPECT_THAT(std::vector<double>(some.begin() + 3, some.begin() + 5), ElementsAre(-1.0, 1.0));
+  ASSERT_EQ(rows.value()->read(some).value(), 2U);
+  ASSERT_EQ(rows.value()->read(some).value(), 1U);
+  EXPECT_EQ(some[0], -4.0);
+  EXPECT_EQ(rows.value()->read(some).error(), Errc::kEndOfStream);
+}
+
+TEST(NpyReader, EveryColumnOfTimesHasAZeroOfItsOwn) {
+  const std::string type = "[('t', '<M8[s]'), ('u', '>M8[ms]')]";
+  const ReadRows out =
+      read_rows(array_of(type, "(2,)",
+                         stored(std::int64_t{10}) + stored(std::int64_t{7000}, true) +
+                             stored(std::int64_t{12}) + stored(std::int64_t{7500}, true)));
+  EXPECT_THAT(out.rows, ElementsAre(ElementsAre(0.0, 0.0), ElementsAre(2.0, 0.5))) << out.error;
+}
+
+TEST(NpyReader, CutOffItGivesTheRowsWhoseColumnsAreAllThere) {
+  const std::string whole = array_of("'<f8'", "(3, 2)", doubles({1, 2, 3, 4, 5, 6}), true);
+  for (std::size_t cut = 1; cut < 48; ++cut) {
+    const ReadRows out = read_rows(whole.substr(0, whole.size() - cut));
+    EXPECT_EQ(out.rows.size(), cut < 24 ? (24 - cut) / 8 : 0U) << cut;
+    if (!out.rows.empty()) {
+      EXPECT_EQ(out.rows[0], (std::vector<double>{1.0, 4.0})) << cut;
+      EXPECT_TRUE(out.health.truncated) << cut;
+    }
+  }
+}
+
+TEST(NpyReader, HasUpTo1024Columns) {
+  const auto array = [](std::size_t columns, bool fields) {
+    std::string type;
+    for (std::size_t c = 0; fields && c < columns; ++c) type += fmt::format("('f{}', '<f8'), ", c);
+    return array_of(fields ? "[" + type.substr(0, type.size() - 2) + "]" : "'<f8'",
+                    fields ? "(1,)" : fmt::format("(1, {})", columns),
+                    doubles(std::vector<double>(columns, 2.5)));
+  };
+  for (const bool fields : {false, true}) {
+    const ReadRows out = read_rows(array(1024, fields));
+    ASSERT_EQ(out.rows.size(), 1U) << out.error;
+    EXPECT_EQ(out.rows[0], std::vector<double>(1024, 2.5));
+    EXPECT_THAT(read_rows(array(1025, fields)).error,
+                HasSubstr(fields ? "holds no numbers" : "more than 1024"));
+  }
+}
+
+// A header of 64 KiB and no longer.
+TEST(NpyReader, AHeaderMayBePadded) {
+  const auto padded = [](std::size_t length, int version) {
+    std::string text = "{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }";
+    text.resize(length, ' ');
+    std::string out = "\x93NUMPY" + std::string{static_cast<char>(version), '\0'};
+    out += version == 1 ? stored(static_cast<std::uint16_t>(length))
+                        : stored(static_cast<std::uint32_t>(length));
+    return out + text + stored(0.5);
+  };
+  EXPECT_EQ(read_rows(padded(65'535, 1)).rows.size(), 1U);
+  EXPECT_EQ(read_rows(padded(65'536, 2)).rows.size(), 1U);
+  EXPECT_THAT(read_rows(padded(65'537, 2)).error, HasSubstr("is cut off in its header"));
+  std::string none = padded(100, 1);
+  none[6] = 0;
+  EXPECT_THAT(read_rows(none).error, HasSubstr("is no NumPy array of version 1, 2 or 3"));
+}
+
 /// A zip file, as NumPy's savez writes it.
 class Archive {
  public:
@@ -275,6 +365,20 @@ TEST(NpyReader, TakesTheLongestArraysOfAnArchiveAsColumns) {
                                         ElementsAre(2.0, 5.0, 6.0)));
     }
   }
+}
+
+// By columns an array is read in several places at once, which a deflated one cannot be.
+TEST(NpyReader, LeavesOutADeflatedArrayThatLiesByColumns) {
+  const std::string by_column = array_of("'<f8'", "(2, 2)", doubles({1, 3, 2, 4}), true);
+  Archive deflated;
+  deflated.add("a.npy", by_column, true);
+  EXPECT_THAT(read_rows(deflated.bytes()).error, HasSubstr("holds no array of numbers"));
+  Archive plain;
+  plain.add("b.npy", array_of("'<f8'", "(2,)", doubles({8, 9})), true);
+  plain.add("a.npy", by_column);
+  const ReadRows out = read_rows(plain.bytes());
+  EXPECT_THAT(out.header, ElementsAre("b", "a_1", "a_2"));
+  EXPECT_THAT(out.rows, ElementsAre(ElementsAre(8.0, 1.0, 2.0), ElementsAre(9.0, 3.0, 4.0)));
 }
 
 TEST(NpyReader, SaysWhatIsWrongWithAnArchive) {
