@@ -240,11 +240,9 @@ ByteStream::Read ByteStream::read_compressed(std::span<char> out) noexcept {
     const auto step =
         decompressor_->push(std::span{raw_}.subspan(raw_begin_, raw_end_ - raw_begin_), out);
     raw_begin_ += step.taken;
-    if (step.given > 0) {
-      fault_ = step.fault;
-      return {Status::kBytes, step.given};
-    }
-    if (step.fault != nullptr) return fail(Errc::kMalformed, step.fault);
+    if (step.fault != nullptr) static_cast<void>(fail(Errc::kMalformed, step.fault));
+    if (step.given > 0) return {Status::kBytes, step.given};
+    if (step.fault != nullptr) return {Status::kError, 0};
     if (raw_begin_ < raw_end_) continue;
     if (raw_ended_) {
       cut_off_ = !decompressor_->is_whole();

@@ -205,6 +205,25 @@ TEST(ByteStream, SumsUpWhatPassedThroughAPipe) {
   EXPECT_FALSE(ByteStream::passed_through("/nonexistent"));
 }
 
+TEST(ByteStream, OfDamagedDataInAPipeThereIsNothingToWaitFor) {
+  std::string packed = made_by("gzip", log_text(30));
+  if (packed.empty()) GTEST_SKIP() << "gzip is not installed";
+  packed[packed.size() / 2] ^= 0x55;
+  OpenPipe pipe;
+  pipe.write(packed);
+  auto stream = ByteStream::open(pipe.path());
+  std::array<char, 5000> part{};
+  auto read = stream.value().read(part);
+  while (read.status == ByteStream::Status::kBytes) read = stream.value().read(part);
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(read.status, ByteStream::Status::kError);
+    EXPECT_EQ(read.count, 0U);
+    EXPECT_EQ(stream.value().error(), Errc::kMalformed);
+    EXPECT_TRUE(stream.value().wait(std::chrono::nanoseconds{0}));
+    read = stream.value().read(part);
+  }
+}
+
 // A pipe may give single bytes, and what they are is known only with the fourth.
 TEST(ByteStream, KnowsCompressedDataThatComeByteByByte) {
   const std::string text = log_text(3);
