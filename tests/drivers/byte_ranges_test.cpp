@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <array>
+#include <cerrno>
 #include <random>
 #include <string>
 
@@ -78,7 +79,9 @@ TEST(RandomFile, IsReadAnywhereUpToItsEnd) {
     EXPECT_EQ(text_of(std::span{part}.first(expected.size())), expected) << offset;
   }
   std::filesystem::resize_file(file.path(), 50'000);
+  errno = EINTR;  // of another call
   EXPECT_EQ(random_file.read(49'900, part), 100U) << "cut off meanwhile";
+  EXPECT_EQ(RandomFile::open(TemporaryFile{""}.path()).value()->size(), 0U);
   EXPECT_THAT(RandomFile::open("/nonexistent").error_text(),
               HasSubstr("/nonexistent: cannot be opened: No such file"));
 }

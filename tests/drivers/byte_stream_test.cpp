@@ -16,7 +16,9 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
+#include "drivers/bytes/spool.hpp"
 #include "drivers/record/format.hpp"
 #include "drivers/record/frames.hpp"
 #include "tests/drivers/temporary_file.hpp"
@@ -49,6 +51,7 @@ AllBytes read_all(const std::string& path) {
   for (auto read = stream.value().read(part);; read = stream.value().read(part)) {
     out.bytes.append(part.data(), read.count);
     out.status = read.status;
+    EXPECT_EQ(read.count > 0, read.status == ByteStream::Status::kBytes);
     if (read.status == ByteStream::Status::kNothingYet || read.status == ByteStream::Status::kBytes)
       continue;
     out.cut_off = stream.value().is_cut_off();
@@ -75,7 +78,9 @@ TEST_P(Compressed, BytesAreThoseThatWereCompressed) {
   const std::string packed = made_by(GetParam(), text);
   if (packed.empty()) GTEST_SKIP() << GetParam() << " is not installed";
   EXPECT_LT(packed.size(), text.size() / 2);
-  EXPECT_EQ(read_all(TemporaryFile{packed}.path()).bytes, text);
+  const AllBytes all = read_all(TemporaryFile{packed}.path());
+  EXPECT_EQ(all.bytes, text);
+  EXPECT_FALSE(all.cut_off);
   const TemporaryFile twice{packed + packed};
   EXPECT_EQ(read_all(twice.path()).bytes, text + text) << "members one behind the other";
 }
@@ -100,7 +105,8 @@ TEST_P(Compressed, DamageIsAnErrorThatNamesTheFile) {
   const TemporaryFile file{packed};
   const AllBytes all = read_all(file.path());
   EXPECT_EQ(all.status, ByteStream::Status::kError);
-  EXPECT_THAT(all.error, HasSubstr(file.path() + ": its compressed data are damaged"));
+  EXPECT_THAT(all.error, HasSubstr(file.path() + ": its compressed data are damaged before byte " +
+                                   std::to_string(packed.size())));
 }
 
 TEST_P(Compressed, FramesAreReadFromThem) {
@@ -170,6 +176,7 @@ std::size_t pass_through(ByteStream& stream, const OpenPipe& pipe, std::size_t b
 }
 
 TEST(ByteStream, KeepsTheFirst8MiBOfAPipe) {
+  EXPECT_EQ(ByteStream::kKept, 8U << 20U);
   for (const std::size_t more : {0U, 1U}) {
     OpenPipe pipe;
     {
@@ -205,6 +212,58 @@ TEST(ByteStream, SumsUpWhatPassedThroughAPipe) {
   EXPECT_FALSE(ByteStream::passed_through("/nonexistent"));
 }
 
+/// Standard input is something else for the time of a test.
+class OtherInput {
+ public:
+  explicit OtherInput(const std::string& path)
+      : before_{::dup(STDIN_FILENO)}, file_{::open(path.c_str(), O_RDONLY)} {
+    EXPECT_EQ(::dup2(file_, STDIN_FILENO), STDIN_FILENO);
+  }
+  ~OtherInput() {
+    ::dup2(before_, STDIN_FILENO);
+    ::close(before_);
+    ::close(file_);
+  }
+  OtherInput(const OtherInput&) = delete;
+  OtherInput& operator=(const OtherInput&) = delete;
+
+ private:
+  int before_;
+  int file_;
+};
+
+TEST(ByteStream, TellsOnePipeFromAnother) {
+  OpenPipe one;
+  OpenPipe two;
+  one.write("abc");
+  two.write("defg");
+  one.close_writer();
+  two.close_writer();
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(read_all(one.path()).bytes, "abc");
+    EXPECT_EQ(ByteStream::passed_through(two.path()).has_value(), again > 0);
+    EXPECT_EQ(read_all(two.path()).bytes, "defg");
+  }
+  EXPECT_EQ(ByteStream::passed_through(one.path())->bytes, 3U);
+  EXPECT_EQ(ByteStream::passed_through(two.path())->bytes, 4U);
+}
+
+TEST(ByteStream, WhatIsShorterThanAMarkIsReadAsItIs) {
+  for (const std::string_view bytes : {"", "x", "\x1F", "\x1F\x8B", "\x28\xB5\x2F", "abc"}) {
+    const AllBytes all = read_all(TemporaryFile{bytes}.path());
+    EXPECT_EQ(all.bytes, bytes);
+    EXPECT_EQ(all.status, ByteStream::Status::kEnd);
+  }
+  EXPECT_EQ(ByteStream::open(TemporaryFile{"x"}.path()).value().share_read(), 0.0);
+}
+
+TEST(ByteStream, ADeviceThatIsNoTerminalIsNoPipe) {
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(read_all("/dev/null").status, ByteStream::Status::kEnd);
+    EXPECT_FALSE(ByteStream::passed_through("/dev/null"));
+  }
+}
+
 TEST(ByteStream, OfDamagedDataInAPipeThereIsNothingToWaitFor) {
   std::string packed = made_by("gzip", log_text(30));
   if (packed.empty()) GTEST_SKIP() << "gzip is not installed";
@@ -222,6 +281,47 @@ TEST(ByteStream, OfDamagedDataInAPipeThereIsNothingToWaitFor) {
     EXPECT_TRUE(stream.value().wait(std::chrono::nanoseconds{0}));
     read = stream.value().read(part);
   }
+}
+
+std::size_t open_files() {
+  const std::filesystem::directory_iterator files{"/proc/self/fd"};
+  return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+TEST(ByteStream, LeavesNoFileOpen) {
+  const TemporaryFile file{log_text(100)};
+  const std::size_t before = open_files();
+  {
+    const OtherInput input{file.path()};
+    auto one = ByteStream::open(file.path());
+    const ByteStream moved{std::move(one.value())};
+    EXPECT_EQ(read_all("-").bytes, read_all(file.path()).bytes);
+    EXPECT_EQ(read_all("/").status, ByteStream::Status::kError);
+    EXPECT_EQ(open_files(), before + 3) << "two of the other input, and one";
+  }
+  EXPECT_EQ(open_files(), before);
+}
+
+TEST(Spool, CopiesStandardInputFromWhereTheShellHasIt) {
+  const std::string text = log_text(100);
+  const TemporaryFile file{text};
+  const OtherInput input{file.path()};
+  ASSERT_EQ(::lseek(STDIN_FILENO, 43, SEEK_SET), 43);
+  EXPECT_EQ(test::content_of(spooled("-").value()), text.substr(43));
+  EXPECT_EQ(spooled_before("-"), "-");
+}
+
+TEST(Spool, WaitsForTheEndOfAPipe) {
+  OpenPipe pipe;
+  pipe.write("abc");
+  std::thread writer{[&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds{30});
+    pipe.write("def");
+    pipe.close_writer();
+  }};
+  const std::string copy = spooled(pipe.path()).value();
+  writer.join();
+  EXPECT_EQ(test::content_of(copy), "abcdef");
 }
 
 // A pipe may give single bytes, and what they are is known only with the fourth.
@@ -268,26 +368,6 @@ TEST(ByteStream, WaitsForAPipeOnly) {
   auto file = ByteStream::open(TemporaryFile{"abc"}.path());
   EXPECT_TRUE(file.value().wait(0ns));
 }
-
-/// Standard input is something else for the time of a test.
-class OtherInput {
- public:
-  explicit OtherInput(const std::string& path)
-      : before_{::dup(STDIN_FILENO)}, file_{::open(path.c_str(), O_RDONLY)} {
-    EXPECT_EQ(::dup2(file_, STDIN_FILENO), STDIN_FILENO);
-  }
-  ~OtherInput() {
-    ::dup2(before_, STDIN_FILENO);
-    ::close(before_);
-    ::close(file_);
-  }
-  OtherInput(const OtherInput&) = delete;
-  OtherInput& operator=(const OtherInput&) = delete;
-
- private:
-  int before_;
-  int file_;
-};
 
 TEST(ByteStream, StandardInputBeginsWhereTheShellHasItAndStaysThere) {
   const std::string text = log_text(100);

@@ -251,6 +251,24 @@ TEST(NpyReader, CutOffItGivesTheRowsWhoseColumnsAreAllThere) {
   }
 }
 
+TEST(NpyReader, AHeaderNeedsNoBlanks) {
+  for (const std::string text :
+       {"{'descr':'<f8','fortran_order':False,'shape':(2,2)}",
+        "{'shape':  ( 2 , 2 ),  'fortran_order':  False,  'descr':  '<f8'}"}) {
+    const std::string header = "\x93NUMPY" + std::string{'\1', '\0'} +
+                               stored(static_cast<std::uint16_t>(text.size())) + text;
+    EXPECT_THAT(read_rows(header + doubles({1, 2, 3, 4})).rows,
+                ElementsAre(ElementsAre(1.0, 2.0), ElementsAre(3.0, 4.0)))
+        << text;
+  }
+}
+
+TEST(NpyReader, SaysWhereAnArrayHasNoRow) {
+  EXPECT_THAT(read_rows(array_of("'<f8'", "(0,)", "")).error, HasSubstr("holds no whole row"));
+  EXPECT_THAT(read_rows(array_of("'<f8'", "(2,)", "abc")).error, HasSubstr("holds no whole row"));
+  EXPECT_EQ(read_rows(array_of("'<f8'", "(1,)", doubles({1}))).error, "");
+}
+
 TEST(NpyReader, HasUpTo1024Columns) {
   const auto array = [](std::size_t columns, bool fields) {
     std::string type;
@@ -312,7 +330,7 @@ class Archive {
               "more" + packed;
     ++count_;
   }
-  [[nodiscard]] std::string bytes(bool wide = false) const {
+  [[nodiscard]] std::string bytes(bool wide = false, const std::string& note = "a note") const {
     std::string end;
     if (wide) {
       const std::size_t at = bytes_.size() + directory_.size();
@@ -324,7 +342,7 @@ class Archive {
     return bytes_ + directory_ + end + "PK\x05\x06" + std::string(4, '\0') + stored(count_) +
            stored(count_) + stored(static_cast<std::uint32_t>(directory_.size())) +
            stored(wide ? 0xFFFFFFFFU : static_cast<std::uint32_t>(bytes_.size())) +
-           stored(std::uint16_t{6}) + "a note";
+           stored(static_cast<std::uint16_t>(note.size())) + note;
   }
 
  private:
@@ -364,6 +382,24 @@ TEST(NpyReader, TakesTheLongestArraysOfAnArchiveAsColumns) {
       EXPECT_THAT(out.rows, ElementsAre(ElementsAre(0.0, 1.0, 2.0), ElementsAre(1.0, 3.0, 4.0),
                                         ElementsAre(2.0, 5.0, 6.0)));
     }
+  }
+}
+
+// NumPy writes no comment at an archive's end; 64 KiB are the longest.
+TEST(NpyReader, AnArchiveMayHaveACommentOrNone) {
+  Archive archive;
+  archive.add("t.npy", array_of("'<f8'", "(3,)", doubles({0, 1, 2})));
+  for (const std::size_t length : {0U, 1U, 65'535U})
+    EXPECT_EQ(read_rows(archive.bytes(false, std::string(length, '.'))).rows.size(), 3U) << length;
+}
+
+TEST(NpyReader, ReadsTheFirst1024MembersOfAnArchive) {
+  for (const auto& [others, rows] : {std::pair{1022, 3U}, std::pair{1023, 2U}}) {
+    Archive archive;
+    archive.add("short.npy", array_of("'<f8'", "(2,)", doubles({0, 1})));
+    for (int i = 0; i < others; ++i) archive.add("notes.txt", "no array");
+    archive.add("long.npy", array_of("'<f8'", "(3,)", doubles({0, 1, 2})));
+    EXPECT_EQ(read_rows(archive.bytes()).rows.size(), rows) << others;
   }
 }
 
