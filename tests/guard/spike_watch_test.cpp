@@ -96,7 +96,7 @@ TEST(SpikeWatch, StrikesWithinTwelveSamplesAreOne) {
   const auto one = strikes_of({{300, 60}, {314, 80}});
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0].tick, 314) << "the largest";
-  EXPECT_EQ(strikes_of({{300, 60}, {316, 80}}).size(), 2U);
+  EXPECT_EQ(strikes_of({{300, 60}, {315, 80}}).size(), 2U);
 }
 
 TEST(SpikeWatch, WhatGoesOnIsJudgedEveryFortySamples) {
