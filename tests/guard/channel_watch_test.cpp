@@ -216,6 +216,9 @@ TEST(RepeatWatch, NeedsTwoSamplesBefore) {
   EXPECT_FALSE(watch.update({9, 9, 9}));
   EXPECT_FALSE(watch.update({1, 1, 1})) << "that of the sample before the last";
   EXPECT_EQ(watch.excess(), 0.0);
+  watch.restart();
+  EXPECT_FALSE(watch.update({9, 9, 9}));
+  EXPECT_FALSE(watch.update({9, 9, 9})) << "whether it moved is not known";
 }
 
 // To and fro: each sample is that before the last one, which is chance.

@@ -267,6 +267,19 @@ TEST(WheelsetWatch, MeasuresTheDifferenceOfTheWheelsets) {
   }
 }
 
+// Of the newest eight blocks the median: four of another noise are half of them.
+TEST(WheelsetWatch, TheDifferenceIsThatOfTheNewestEightBlocks) {
+  TwoWheelsets wheelsets;
+  wheelsets.run(60'000);
+  wheelsets.noise = 0.5;
+  wheelsets.run(3 * 3000);
+  EXPECT_NEAR(wheelsets.watch().difference_mps2() / 0.02, 0.957, 0.05);
+  wheelsets.run(3000);
+  EXPECT_GT(wheelsets.watch().difference_mps2(), 0.1);
+  wheelsets.run(3000);
+  EXPECT_NEAR(wheelsets.watch().difference_mps2() / 0.5, 0.957, 0.05);
+}
+
 // What gravity or an offset adds to either is no difference.
 TEST(WheelsetWatch, AnOffsetIsNoDifference) {
   TwoWheelsets wheelsets;
