@@ -111,5 +111,20 @@ TEST(SpectralGuard, ThePlaceOfAStepOfTheGainIsKnownToHalfABlock) {
   }
 }
 
+// Three blocks after it and one more, the one that holds it not counted.
+TEST(SpectralGuard, AStepOfTheGainIsKnownFourBlocksLater) {
+  for (const double step_s : {100.0, 103.0, 106.0}) {
+    Track track;
+    track.change = [&](std::int64_t tick, Track::Values& a) {
+      if (static_cast<double>(tick) > step_s * kTrackRateHz) a[2] *= 0.95;
+    };
+    track.run(step_s);
+    double later_s = 0.0;
+    for (; later_s < 100.0 && track.faults().empty(); later_s += 1.0) track.run(1.0);
+    EXPECT_GT(later_s, 35.0) << step_s;
+    EXPECT_LT(later_s, 48.0) << step_s;
+  }
+}
+
 }  // namespace
 }  // namespace dampline

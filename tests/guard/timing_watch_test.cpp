@@ -225,6 +225,11 @@ TEST(TimingWatch, TakesAnotherSpeedForARide) {
   EXPECT_TRUE(blocks.faults().empty());
   EXPECT_EQ(blocks.speed_changes(), 1U);
   EXPECT_NEAR(blocks.watch().delay_s(), kUsualS - 0.004, 2e-6);
+  Blocks fewer;
+  fewer.show(12, {});
+  fewer.show(4, faster(0.004));
+  EXPECT_EQ(fewer.speed_changes(), 1U);
+  EXPECT_NEAR(fewer.watch().delay_s(), kUsualS - 0.004, 2e-6) << "the newest three are kept";
 }
 
 // The frame's lag behind the mean stays where it moves by a quarter of the delay's change or less.
