@@ -149,8 +149,9 @@ TEST(FitWeakForm, FindsTheForceOfAStationaryDensity) {
   for (const auto& [level, offset, viscous] :
        {std::tuple{0.45, 0.0, 0.0}, std::tuple{0.45, 0.05, 0.0}, std::tuple{0.3, 0.0, 4.0}}) {
     for (const std::size_t segments : {3U, 8U}) {
-      const DriftSums sums = grid([&](double v) { return stationary(v, level, offset, viscous); },
-                                  [](double) { return 0.0; }, [](double) { return 0.0; });
+      const DriftSums sums =
+          grid([l = level, o = offset, c = viscous](double v) { return stationary(v, l, o, c); },
+               [](double) { return 0.0; }, [](double) { return 0.0; });
       const DriftFit fit =
           fit_weak_form(sums, drift_bins, kDriftBeta, kDriftLevel, kDriftRateHz, segments);
       ASSERT_TRUE(fit.ok);
