@@ -263,6 +263,20 @@ TEST(Guard, ManyShortGapsAreLostSamplesAlone) {
   }
 }
 
+// One that ticks miss at 30 s, and one in all channels that none misses at 80 s.
+TEST(Guard, SeesASlipBehindAGap) {
+  const sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 1);
+  sim::FaultyRecord record{simulation, {.start_s = 80.0, .end_s = 95.0, .lost_everywhere = 1}};
+  const auto guard = std::make_unique<Guard>(GuardConfig{});
+  for (int i = 0; i < 150 * sim::kSampleRateHz; ++i) {
+    const Sample sample = sim::to_sample(record.next());
+    if (i != 9000) guard->update(sample);
+  }
+  EXPECT_EQ(names(*guard), Names{"lost_samples all"});
+  EXPECT_EQ(guard->faults().front().count, 2U);
+  EXPECT_NEAR(guard->faults().front().last_s, 80.0, 1.0);
+}
+
 TEST(Guard, NamesSamplesLostInAllChannelsWhereWheelsetsDiffer) {
   const auto with = [](int lost) {
     return run([lost](Trial& s) {
