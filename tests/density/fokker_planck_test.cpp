@@ -342,6 +342,12 @@ TEST(FokkerPlanck, LearnsOneRangeForADensityAndTheJointOne) {
   EXPECT_NEAR(run->joint().x_axis().high() / run->deflections().axis().high(), 1.0, 1e-12);
   EXPECT_NEAR(run->joint().y_axis().high() / run->velocities().axis().high(), 1.0, 1e-12);
   EXPECT_EQ(run->joint().samples(), 9000U);
+  FokkerPlanck brief{{}};
+  ride_white(brief, 4, 5999, 0);
+  EXPECT_TRUE(brief.velocities().axis().learning() && brief.deflections().axis().learning());
+  ride_white(brief, 5, 1, 5999);
+  EXPECT_FALSE(brief.velocities().axis().learning() || brief.deflections().axis().learning())
+      << "twenty seconds";
 }
 
 // Friction of both signs is mixed within 1.5 ms of a reversal: at 6 m/s^2 within 9 mm/s.

@@ -114,6 +114,8 @@ TEST(JointHistogram, MergesWhatForgetsEitherWay) {
 
 TEST(JointHistogram, PutsASampleWhereItBelongs) {
   Joint joint{given()};
+  EXPECT_EQ(joint.share_outside(), 0.0) << "of nothing";
+  EXPECT_EQ(joint.share(0, 0), 0.0);
   for (const auto& [x, y, i, j] :
        {std::tuple{-2.0, -4.0, 0U, 0U}, std::tuple{1.99, 3.99, 15U, 31U},
         std::tuple{0.0, -0.01, 8U, 15U}, std::tuple{-0.3, 0.0, 6U, 16U}}) {
