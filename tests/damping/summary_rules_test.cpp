@@ -139,6 +139,12 @@ TEST(SummaryRules, ADeviationOfTheViscousPartGrowsAsTheMotionFalls) {
   const Snapshot slow = at(0.01);
   const double floor = 0.003 * slow.coulomb_with_viscous_n.value / 0.01;
   EXPECT_NEAR(slow.viscous_nspm.std, std::hypot(fast.viscous_nspm.std, floor), 1e-9);
+  const auto unknown = std::make_unique<Statistics>(of_a_ride());
+  unknown->header.velocity = {};
+  const Snapshot none = summarise(*unknown, {.moving_mass_kg = 1.0});
+  EXPECT_NEAR(none.viscous_nspm.std, fast.viscous_nspm.std, 1e-9) << "of no motion there is none";
+  EXPECT_EQ(none.stick_share, 0.0);
+  EXPECT_EQ(none.velocity_rms_mps, 0.0);
 }
 
 TEST(SummaryRules, NeedsFourEntriesAndFiveForHeldOutErrors) {

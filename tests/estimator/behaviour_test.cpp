@@ -271,6 +271,8 @@ TEST(Estimator, TakesSettingsUpToTheirLimits) {
   const auto taken = [](const EstimatorConfig& config) { return Estimator::check(config).ok(); };
   EXPECT_TRUE(taken({.sample_rate_hz = 149.85}));
   EXPECT_TRUE(taken({.sample_rate_hz = 400.0}));
+  EXPECT_TRUE(taken({.moving_mass_kg = 0.1}));
+  EXPECT_TRUE(taken({.screen = {.sample_rate_hz = -1.0}})) << "which is the estimator's";
   EXPECT_TRUE(taken({.velocity_corner_hz = 0.7}));
   EXPECT_TRUE(taken({.velocity_corner_hz = 1.0}));
   EXPECT_TRUE(taken({.anti_alias = {.corner_hz = 0.0, .order = 1}}));
