@@ -439,6 +439,10 @@ TEST(NpyReader, SaysWhatIsWrongWithAnArchive) {
     std::memcpy(&cut[end + 12], &size, sizeof size);
     EXPECT_THAT(read_rows(cut).error, HasSubstr("holds no array of numbers")) << missing;
   }
+  std::string longer = wide.bytes();
+  longer.replace(longer.rfind(std::string{"\7\0\2\0ab", 6}) + 2, 2, "\xFF\xFF");
+  EXPECT_THAT(read_rows(longer).error, HasSubstr("found no array where its directory says"))
+      << "a field beyond the end of the others";
   Archive empty;
   empty.add("a.npy", array_of("'<U8'", "(1,)", std::string(32, '\0')));
   EXPECT_THAT(read_rows(empty.bytes()).error, HasSubstr("holds no array of numbers"));

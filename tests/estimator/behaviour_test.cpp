@@ -6,7 +6,10 @@
 #include <iostream>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
+#include "sim_hw/noise.hpp"
 #include "tests/estimator/record.hpp"
 
 namespace dampline {
@@ -134,6 +137,47 @@ TEST(Estimator, AFrameThatSwingsOnQuietWheelsetsIsStill) {
   EXPECT_GT(motions, 5 * 300);
 }
 
+/// A suspension that moves by a sine of this velocity, rms, for 15 s and rests then, on wheelsets
+/// whose mean changes by so much from sample to sample, rms: the times at which it is still.
+std::vector<double> still_times(double velocity_mps, double change_mps2) {
+  const auto estimator = std::make_unique<Estimator>(EstimatorConfig{.velocity_corner_hz = 1.0});
+  std::vector<double> out;
+  for (std::int64_t tick = 0; tick < 30 * 300; ++tick) {
+    constexpr double kTurnPs = 2.0 * std::numbers::pi * 6.0;
+    const double time_s = static_cast<double>(tick) / 300.0;
+    const double relative_mps2 =
+        time_s < 15.0 ? std::sqrt(2.0) * velocity_mps * kTurnPs * std::cos(kTurnPs * time_s) : 0.0;
+    const double track_mps2 = 0.5 * change_mps2 * (tick % 2 == 0 ? 1.0 : -1.0);
+    Sample sample{.tick = tick};
+    sample.accel_mps2 = {track_mps2 + 0.5 * relative_mps2, track_mps2, track_mps2};
+    const UpdateResult result = estimator->update(sample);
+    if (result.has_motion && result.motion.still)
+      out.push_back(static_cast<double>(result.motion.tick) / 300.0);
+  }
+  return out;
+}
+
+// 2 mm/s rms of the suspension, and 0.2 m/s^2 rms from sample to sample of the wheelsets.
+TEST(Estimator, StandsStillBelowALeastMotionOfEither) {
+  const auto moves = [](double velocity_mps, double change_mps2) {
+    const auto still = still_times(velocity_mps, change_mps2);
+    return std::none_of(still.begin(), still.end(), [](double t) { return t > 6.0 && t < 14.0; });
+  };
+  EXPECT_TRUE(moves(2.2e-3, 1.0));
+  EXPECT_FALSE(moves(1.8e-3, 1.0));
+  EXPECT_TRUE(moves(0.02, 0.22));
+  EXPECT_FALSE(moves(0.02, 0.18));
+}
+
+// Squares are smoothed over a quarter of a second: of 20 mm/s a hundredth is left after 4.6 of
+// them.
+TEST(Estimator, StandsStillASecondAfterItsMotion) {
+  const auto still = still_times(0.02, 1.0);
+  const auto first = std::find_if(still.begin(), still.end(), [](double t) { return t > 10.0; });
+  ASSERT_NE(first, still.end());
+  EXPECT_NEAR(*first - 15.0, 0.25 * std::log(100.0), 0.1);
+}
+
 TEST(Estimator, KnowsARowsLatency) {
   // The row whose centre lies in the last stride of block 0 is counted when its reach is complete.
   const auto identifier = std::make_unique<Estimator>(EstimatorConfig{});
@@ -206,6 +250,22 @@ TEST(Estimator, ChoosesTheCornerByTheNoise) {
   };
   EXPECT_EQ(corner_of(0.02), 0.7);
   EXPECT_EQ(corner_of(0.1), 1.0);
+}
+
+// From 0.05 m/s^2 on, of a frame at rest.
+TEST(Estimator, ChoosesTheHigherCornerAboveALeastNoise) {
+  for (const auto& [noise_mps2, corner_hz] : {std::pair{0.043, 0.7}, std::pair{0.057, 1.0}}) {
+    sim::Random random{3, sim::Stream::kSensors};
+    const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
+    for (std::int64_t tick = 0; tick < 1500; ++tick) {
+      Sample sample{.tick = tick};
+      for (double& accel : sample.accel_mps2) accel = noise_mps2 * random.normal();
+      estimator->update(sample);
+    }
+    const auto statistics = std::make_unique<Statistics>();
+    estimator->export_statistics(*statistics);
+    EXPECT_EQ(statistics->header.velocity_corner_hz, corner_hz) << noise_mps2;
+  }
 }
 
 /// Friction rises by 30 % in the middle: who forgets knows only the second half.
