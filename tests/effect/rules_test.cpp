@@ -122,6 +122,91 @@ TEST(Rules, SpringsMayBeTheProductOfTwoFrictions) {
   EXPECT_EQ(later(Effect::kPreslidingHysteresis, spring), Verdict::kYes);
 }
 
+bool comes_first(Effect effect, double gain, double block_t, double coefficient_t) {
+  return judge_step({}, true, true, step(effect, gain, block_t, coefficient_t)) == Verdict::kYes;
+}
+
+// 5 % with ten deviations; it or 2.5 % with four of them in blocks that agree by two; 0.3 % where
+// they agree by 3.3, but for a skew.
+TEST(Rules, TheFirstIsJudgedByGainAndSignificanceTogether) {
+  constexpr Effect kAny = Effect::kViscous;
+  EXPECT_TRUE(comes_first(kAny, 0.051, 1.0, 10.1));
+  EXPECT_FALSE(comes_first(kAny, 0.049, 1.0, 10.1));
+  EXPECT_FALSE(comes_first(kAny, 0.051, 1.0, 9.9));
+  for (const double gain : {0.051, 0.026}) {
+    EXPECT_TRUE(comes_first(kAny, gain, 2.1, 4.1));
+    EXPECT_FALSE(comes_first(kAny, gain, 1.9, 4.1));
+    EXPECT_FALSE(comes_first(kAny, gain, 2.1, 3.9));
+  }
+  EXPECT_FALSE(comes_first(kAny, 0.024, 2.1, 4.1));
+  EXPECT_TRUE(comes_first(kAny, 0.0031, 3.4, 0.0));
+  EXPECT_FALSE(comes_first(kAny, 0.0029, 3.4, 0.0));
+  EXPECT_FALSE(comes_first(kAny, 0.0031, 3.2, 0.0));
+  EXPECT_FALSE(comes_first(Effect::kTimeSkew, 0.0031, 3.4, 0.0));
+  EXPECT_TRUE(comes_first(Effect::kTimeSkew, 0.026, 2.1, 4.1));
+}
+
+TEST(Rules, WhatIsFaintMustBeSure) {
+  EXPECT_TRUE(comes_first(Effect::kStribeck, 0.0016, 1.6, 12.1));
+  EXPECT_FALSE(comes_first(Effect::kStribeck, 0.0014, 1.6, 12.1));
+  EXPECT_FALSE(comes_first(Effect::kStribeck, 0.0016, 1.4, 12.1));
+  EXPECT_FALSE(comes_first(Effect::kStribeck, 0.0016, 1.6, 11.9));
+  EXPECT_FALSE(comes_first(Effect::kViscous, 0.0016, 1.6, 12.1));
+  for (const Effect spring :
+       {Effect::kCubicStiffness, Effect::kQuadraticStiffness, Effect::kAsymmetricStiffness}) {
+    EXPECT_TRUE(comes_first(spring, 1e-4, 2.6, 4.3));
+    EXPECT_FALSE(comes_first(spring, 1e-4, 2.4, 4.3));
+    EXPECT_FALSE(comes_first(spring, 1e-4, 2.6, 4.1));
+  }
+}
+
+// 1.2 % with ten deviations and blocks that agree by 3.5; eight where the gain is 5 %, or 2.5 % in
+// blocks that agree by 2.5, of a spring that bends by 2.
+TEST(Rules, ALaterOneIsJudgedBothWaysToo) {
+  const auto joins = [](Effect effect, double gain, double block_t, double coefficient_t) {
+    return later(Effect::kViscous, step(effect, gain, block_t, coefficient_t)) == Verdict::kYes;
+  };
+  EXPECT_TRUE(joins(Effect::kGainError, 0.013, 3.6, 10.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.011, 3.6, 10.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.013, 3.4, 10.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.013, 3.6, 9.9));
+  EXPECT_TRUE(joins(Effect::kGainError, 0.026, 2.6, 8.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.024, 2.6, 8.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.026, 2.4, 8.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.026, 2.6, 7.9));
+  EXPECT_TRUE(joins(Effect::kGainError, 0.051, 0.1, 8.1));
+  EXPECT_FALSE(joins(Effect::kGainError, 0.049, 0.1, 8.1));
+  for (const Effect spring : {Effect::kBumpStop, Effect::kCubicStiffness}) {
+    EXPECT_TRUE(joins(spring, 0.026, 2.1, 8.1));
+    EXPECT_FALSE(joins(spring, 0.026, 1.9, 8.1));
+  }
+}
+
+// The least gain of a sure effect, by what it is beside.
+TEST(Rules, AGainCountsFromWhatTheKnownEffectsLeave) {
+  const auto expect_from = [](const Model& known, Effect effect, double gain) {
+    const auto verdict = [&](double share) {
+      return judge_step(known, false, true, step(effect, share * gain, 10.0, 25.0));
+    };
+    EXPECT_EQ(verdict(1.02), Verdict::kYes) << gain;
+    EXPECT_NE(verdict(0.98), Verdict::kYes) << gain;
+  };
+  expect_from(with(Effect::kViscous), Effect::kGainError, 0.012);
+  expect_from(with(Effect::kPreslidingHysteresis), Effect::kGainError, 0.015);
+  expect_from(with(Effect::kPreslidingHysteresis), Effect::kAsymmetricViscous, 0.035);
+  expect_from(with(Effect::kUnmodelledMode), Effect::kGainError, 0.035);
+  expect_from(with(Effect::kBumpStop), Effect::kQuadraticStiffness, 0.035);
+  expect_from(with(Effect::kViscous), Effect::kBacklash, 0.035);
+  expect_from(with(Effect::kTimeSkew), Effect::kTimeSkew, 0.06);
+  expect_from(with(Effect::kTimeSkew), Effect::kBacklash, 0.06);
+  expect_from(with(Effect::kBacklash), Effect::kTimeSkew, 0.065);
+  expect_from(with(Effect::kTimeSkew), Effect::kGainError, 0.10);
+  Candidate progressive;
+  progressive.effect = Effect::kProgressiveFriction;
+  expect_from(with(Effect::kPreslidingHysteresis).with(progressive), Effect::kQuadraticStiffness,
+              0.15);
+}
+
 /// Improvements of so many entries whose mean is `t` times its deviation.
 double block_t_of(std::size_t entries, double t) {
   const auto before = std::make_unique<ModelFit>();
