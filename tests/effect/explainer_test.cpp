@@ -145,6 +145,9 @@ TEST(Explainer, ImpactsOnTheSurrogateTooAreNone) {
   const Record sound = explained("", 79, 150.0, record.diagnosis->scale_m());
   const auto explainer = std::make_unique<Explainer>();
   Explanation kept = record.explanation;
+  const auto empty = std::make_unique<Diagnosis>(EstimatorConfig{}, record.diagnosis->grids());
+  EXPECT_FALSE(explainer->apply_floor({*empty}, 0, kept)) << "too few rows";
+  EXPECT_FALSE(explainer->apply_floor({*sound.diagnosis, empty.get()}, 0, kept));
   ASSERT_TRUE(explainer->apply_floor({*sound.diagnosis}, 0, kept));
   EXPECT_EQ(kept.step_count, 1U);
   Explanation taken_back = record.explanation;
