@@ -268,6 +268,42 @@ TEST(Estimator, ChoosesTheHigherCornerAboveALeastNoise) {
   }
 }
 
+TEST(Estimator, KeepsTheCornerThatIsSet) {
+  for (const double corner_hz : {0.7, 1.0}) {
+    for (const double noise_mps2 : {0.02, 0.1}) {
+      sim::Random random{3, sim::Stream::kSensors};
+      const auto estimator =
+          std::make_unique<Estimator>(EstimatorConfig{.velocity_corner_hz = corner_hz});
+      for (std::int64_t tick = 0; tick < 1500; ++tick) {
+        Sample sample{.tick = tick};
+        for (double& accel : sample.accel_mps2) accel = noise_mps2 * random.normal();
+        estimator->update(sample);
+      }
+      const auto statistics = std::make_unique<Statistics>();
+      estimator->export_statistics(*statistics);
+      EXPECT_EQ(statistics->header.velocity_corner_hz, corner_hz) << noise_mps2;
+    }
+  }
+}
+
+// Of a constant no velocity comes, from the first one on: none is given that reaches back before
+// the record.
+TEST(Estimator, TakesNoBeginningForMotion) {
+  const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
+  int motions = 0;
+  for (std::int64_t tick = 0; tick < 3000; ++tick) {
+    Sample sample{.tick = tick};
+    const double track_mps2 = tick % 2 == 0 ? 1.0 : -1.0;
+    sample.accel_mps2 = {9.81 + track_mps2, track_mps2, track_mps2};
+    const UpdateResult result = estimator->update(sample);
+    if (!result.has_motion) continue;
+    ++motions;
+    ASSERT_NEAR(result.motion.velocity_mps, 0.0, 1e-9) << result.motion.tick;
+    ASSERT_NEAR(result.motion.deflection_m, 0.0, 1e-9) << result.motion.tick;
+  }
+  EXPECT_GT(motions, 500);
+}
+
 /// Friction rises by 30 % in the middle: who forgets knows only the second half.
 TEST(Estimator, AWindowForgetsWhatIsOlder) {
   auto config = sim::reference_run(sim::Load::kLaden, 80.0, 21);
