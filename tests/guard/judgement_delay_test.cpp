@@ -145,6 +145,19 @@ TEST(JudgementDelay, MakesAnEstimateFromARecordWithSpikes) {
   EXPECT_NEAR(coulomb_n(held.out) / sound_n, 1.0, 0.003);
 }
 
+/// The segment of 2 s in which they would be judged never ends.
+TEST(JudgementDelay, ReplacesWrongSamplesUpToTheEnd) {
+  const std::vector<Sample> sound = record_of(60.0, {});
+  std::vector<Sample> wrong = sound;
+  const std::vector<std::size_t> places{sound.size() - 250, sound.size() - 100, sound.size() - 6};
+  for (const std::size_t at : places) wrong[at].accel_mps2[1] += 40.0;
+  const Held held = hold(wrong);
+  ASSERT_EQ(held.out.size(), sound.size());
+  EXPECT_EQ(held.counts.replaced, places.size());
+  for (const std::size_t at : places)
+    EXPECT_NEAR(held.out[at].accel_mps2[1], sound[at].accel_mps2[1], 4.0) << at;
+}
+
 TEST(Estimator, MakesNothingOfSpoiltSamples) {
   std::vector<Sample> samples = record_of(60.0, {});
   for (std::size_t i = 9000; i < 9300; ++i) {

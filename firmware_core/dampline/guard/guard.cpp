@@ -397,6 +397,8 @@ void Guard::judge_time(const Sample& sample) noexcept {
 
 void Guard::finish() noexcept {
   settle_jumps(std::numeric_limits<std::int64_t>::max() / 2);
+  for (SpikeWatch& watch : spikes_) watch.finish();
+  for (std::size_t i = 0; i < wrong_.size() / kChannels; ++i) take_strikes();
   if (any_ && last_.tick > block_start_) close_block(last_.tick);
 }
 

@@ -45,8 +45,7 @@ void SpikeWatch::update(std::int64_t tick, std::int64_t code) noexcept {
   if (open_) {
     ++since_;
     ++length_;
-    const bool whole = count_ - 1 - open_count_ >= kHalf;
-    if (since_ > kReach || (length_ > kLongest && whole)) settle();
+    if (since_ > kReach || (length_ > kLongest && is_whole())) settle();
   }
   if (scale_ == 0.0 && in_segment_ % kRefresh == kRefresh - 1) gate_ = kGate * current_scale();
   if (++in_segment_ >= segment_ && !open_) end_segment();
@@ -81,9 +80,19 @@ void SpikeWatch::end_segment() noexcept {
   gate_ = kGate * scale_;
   changes_.clear();
   in_segment_ = 0;
+  close_candidates();
+}
+
+void SpikeWatch::close_candidates() noexcept {
   closed_ = candidates_;
   closed_count_ = candidate_count_;
   candidate_count_ = 0;
+}
+
+void SpikeWatch::finish() noexcept {
+  if (scale_ == 0.0 || closed_count_ > 0) return;
+  if (open_ && is_whole()) settle();
+  close_candidates();
 }
 
 void SpikeWatch::restart() noexcept {

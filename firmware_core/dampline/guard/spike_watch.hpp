@@ -29,6 +29,8 @@ class SpikeWatch {
   void update(std::int64_t tick, std::int64_t code) noexcept;
   /// Samples are missing: what comes next does not continue what came before.
   void restart() noexcept;
+  /// No more samples: the open segment ends, judged by the deviation of the one before.
+  void finish() noexcept;
   /// The strikes of the segment that ended, one a call; false when there is none left.
   [[nodiscard]] bool next(Strike& strike) noexcept;
   /// Robust standard deviation of the second difference, in codes; 0 before the first segment.
@@ -51,9 +53,11 @@ class SpikeWatch {
   [[nodiscard]] std::int64_t past(std::int64_t back) const noexcept {
     return ring_[static_cast<std::size_t>(count_ - 1 - back) % kRing];
   }
+  [[nodiscard]] bool is_whole() const noexcept { return count_ - 1 - open_count_ >= kHalf; }
   void settle() noexcept;
   void keep(const Candidate& candidate) noexcept;
   void end_segment() noexcept;
+  void close_candidates() noexcept;
   [[nodiscard]] double current_scale() const noexcept;
 
   std::int64_t segment_;
