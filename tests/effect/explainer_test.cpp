@@ -9,6 +9,7 @@
 
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/simulation.hpp"
+#include "tests/pitching_car.hpp"
 
 namespace dampline::effect {
 namespace {
@@ -196,26 +197,18 @@ TEST(Explainer, PredictsARecordThatWasNeverFitted) {
 // A laden car of two trucks whose frames pitch: without what the sensor at its frame's end shows
 // the level is a tenth too low.
 TEST(Explainer, BeginsFromTheLevelBesideAPitchThatIsMeasured) {
-  sim::SimulationConfig config = sim::reference_run(sim::Load::kLaden, 80.0, 4);
-  config.vehicle.emplace();
-  config.extra_sensors = true;
-  sim::ModeEffects& modes = config.truck.modes;
-  modes.pitch_inertia_kgm2 = sim::kFramePitchInertiaKgm2;
-  const sim::VehicleMasses masses = sim::masses_of(*config.vehicle, config.truck);
-  const EstimatorConfig core{
-      .moving_mass_kg = masses.own_kg,
-      .frame_pitch_mass_kg = modes.pitch_inertia_kgm2 / std::pow(modes.pitch_half_wheelbase_m, 2),
-      .far_mass_kg = masses.other_kg};
-  const auto estimator = std::make_unique<Estimator>(core);
-  const auto diagnosis = std::make_unique<Diagnosis>(core);
-  sim::Simulation simulation{config};
+  const test::PitchingCar car;
+  const auto estimator = std::make_unique<Estimator>(car.estimator);
+  const auto diagnosis = std::make_unique<Diagnosis>(car.estimator);
+  sim::Simulation simulation{car.simulation};
   for (int n = 0; n < 42 * sim::kSampleRateHz; ++n) {
     const Sample sample = sim::to_sample(simulation.next());
     diagnosis->update(sample, estimator->update(sample));
   }
   diagnosis->finish();
   const auto explainer = std::make_unique<Explainer>();
-  const Explanation e = explainer->explain(*diagnosis, {.moving_mass_kg = masses.own_kg});
+  const Explanation e =
+      explainer->explain(*diagnosis, {.moving_mass_kg = car.estimator.moving_mass_kg});
   EXPECT_NEAR(e.base_coulomb_n.value / 8356.0, 1.0, 0.02);
 }
 

@@ -3,36 +3,26 @@
 // truck's frame, whose mass pushes on this end.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "tests/estimator/record.hpp"
+#include "tests/pitching_car.hpp"
 
 namespace dampline {
 namespace {
 
-/// A laden car of two trucks whose frames pitch, with both sensors: made once.
-struct PitchingCar {
-  EstimatorConfig config{};
+/// Its record, made once.
+struct CarRecord {
+  EstimatorConfig config;
   std::vector<Sample> record;
-  PitchingCar() {
-    sim::SimulationConfig simulation = sim::reference_run(sim::Load::kLaden, 80.0, 4);
-    simulation.vehicle.emplace();
-    simulation.extra_sensors = true;
-    sim::ModeEffects& modes = simulation.truck.modes;
-    modes.pitch_inertia_kgm2 = sim::kFramePitchInertiaKgm2;
-    const sim::VehicleMasses masses = sim::masses_of(*simulation.vehicle, simulation.truck);
-    config.moving_mass_kg = masses.own_kg;
-    config.far_mass_kg = masses.other_kg;
-    config.frame_pitch_mass_kg =
-        modes.pitch_inertia_kgm2 / std::pow(modes.pitch_half_wheelbase_m, 2);
-    record = simulate(simulation, 35.0);
-  }
 };
-const PitchingCar& pitching_car() {
-  static const PitchingCar kCar;
+const CarRecord& pitching_car() {
+  static const CarRecord kCar = [] {
+    const test::PitchingCar car;
+    return CarRecord{car.estimator, simulate(car.simulation, 35.0)};
+  }();
   return kCar;
 }
 
