@@ -48,6 +48,7 @@ PARTS = {
     "coverage": "Deviations of explained parameters",
     "noise": "Noise on the motion of a driven mass",
     "diagnosis_pairs": "Two missing effects at once",
+    "unseen": "Trucks of any kind",
     "guards": "Faults",
     "sensors": "Coarse, noisy, slow and unfiltered sensors",
     "places": "Sensors that sit elsewhere",

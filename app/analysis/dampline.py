@@ -197,7 +197,7 @@ class State:
         coulomb, stiffness = law.theta[0], long_law.theta[1]
         level, level_std = self._level(law, std[0], viscous)
         sticks = [factor * max(self.stick_share - start, 0.0) for factor, start in _STICKING]
-        level_std = np.hypot(level_std, level * np.hypot(1e-3, sticks[0]))
+        level_std = np.hypot(level_std, level * np.hypot(2.5e-3, sticks[0]))
         stiffness_std = np.hypot(long_std[1], stiffness * np.hypot(3e-3, sticks[1]))
         below, above = _neighbours(law.width)
         span = _WIDTHS_MPS[above] - _WIDTHS_MPS[below]

@@ -116,7 +116,7 @@ RunResult describe_truck(const TruckRecord& record, const ModelConfig& model) {
   const bool viscous = has(model.base, "viscous");
   const double nmse = viscous ? s.nmse_with_viscous : s.nmse;
   result.fit = {
-      nmse, std::sqrt(nmse), viscous ? s.held_out_nmse_with_viscous : s.held_out_nmse, {}, {}};
+      nmse, std::sqrt(nmse), viscous ? s.held_out_nmse_with_viscous : s.held_out_nmse, {}, {}, {}};
   result.std_is_lower_bound = viscous ? s.std_with_viscous_is_lower_bound : s.std_is_lower_bound;
   result.stick_share = s.stick_share;
   result.excitation = s.excitation;
@@ -125,6 +125,7 @@ RunResult describe_truck(const TruckRecord& record, const ModelConfig& model) {
     result.sample_rate_hz = Estimate{record.measured.rate_hz, record.measured.std_hz};
   result.duration_s = record.time_s(record.newest_tick + 1);
   result.fit.law_width_mps = result.parameters.back().value;
+  result.fit.law_width_share = *result.fit.law_width_mps / s.velocity_rms_mps;
   if (!viscous)
     result.fit.viscous = {s.viscous_nspm.value * s.velocity_rms_mps / s.coulomb_n.value,
                           s.viscous_nspm.value / s.viscous_nspm.std};

@@ -27,6 +27,7 @@ constexpr double kWidestLawMps = 6e-3;  // a wider one is no error of the veloci
 constexpr double kStickMps = 2e-3;      // below it a truck counts as sticking
 constexpr double kNothingFitted = 0.8;  // of the variance, left
 constexpr double kSure = 3.0;           // deviations
+constexpr double kWidestShare = 0.7;    // of the rms velocity, of a law whose level is seen
 constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
 constexpr double kViscousSigmas = 5.0;
 constexpr double kLeastFriction = 0.01;  // of the weight
@@ -110,6 +111,16 @@ void judge_numbers(const RunResult& result, Reasons& out) {
   }
 }
 
+void judge_width(const RunResult& result, Reasons& out) {
+  const std::optional<double> share = result.fit.law_width_share;
+  if (!share || *share <= kWidestShare) return;
+  out.emplace_back(
+      Trust::kModelIncomplete,
+      fmt::format("The law is {:.2g} times as wide as the rms velocity: the motion hardly leaves "
+                  "its width, and does not show the level of dry friction.",
+                  *share));
+}
+
 std::optional<double> left_of(const Fit& fit) {
   return fit.held_out_nmse ? fit.held_out_nmse : fit.nmse;
 }
@@ -173,12 +184,18 @@ void judge_terms(const RunResult& result, Reasons& out) {
         fmt::format("A parameter is not constant: {} changed by {:+.1f} %. `dampline "
                     "explain` tells when.",
                     result.faults.drift->parameter, result.faults.drift->change_percent.value));
+}
+
+void judge_speed(const Explaining* explaining, const RunResult& result, Reasons& out) {
   const std::optional<ViscousPart>& v = result.fit.viscous;
-  if (v && std::abs(v->share) > kViscousShare && std::abs(v->sigmas) > kViscousSigmas)
-    out.emplace_back(Trust::kModelIncomplete,
-                     fmt::format("The model lacks something that depends on speed, {:.0f} % of the "
-                                 "dry friction: `dampline explain` finds out what.",
-                                 100.0 * std::abs(v->share)));
+  if (!v || std::abs(v->share) <= kViscousShare || std::abs(v->sigmas) <= kViscousSigmas) return;
+  out.emplace_back(
+      Trust::kModelIncomplete,
+      fmt::format(
+          "The model lacks something that depends on speed, {:.0f} % of the dry friction{}.",
+          100.0 * std::abs(v->share),
+          explaining == nullptr ? ": `dampline explain` finds out what"
+                                : ", and no effect of the library is it"));
 }
 
 std::string words(const Parameter& p, double scale, const char* unit) {
@@ -223,8 +240,10 @@ void judge_trust(const Explaining* explaining, RunResult& result) {
   Reasons reasons;
   judge_data(explaining, result, reasons);
   judge_numbers(result, reasons);
+  judge_width(result, reasons);
   judge_fit(explaining, result, reasons);
   if (explaining == nullptr) judge_terms(result, reasons);
+  judge_speed(explaining, result, reasons);
   result.trust = Trust::kTrusted;
   result.trust_reasons.clear();
   result.headline = is_truck(result) ? truck_numbers(result) : rig_numbers(result);

@@ -270,9 +270,6 @@ TEST(Summary, CallsDeviationsALowerBoundWhereItSticks) {
   EXPECT_TRUE(summary_of(*statistics).std_is_lower_bound);
 }
 
-// What the scatter of the blocks does not show: 0.1 % of the level, 0.3 % of the stiffness, 0.3 %
-// of level / v_rms; of a curve 0.25 %, 3 % where it is slow as the width, and 15 % of what the
-// width hides.
 TEST(Summary, CallsDeviationsALowerBoundWhereTheLawIsWiderThan10Mmps) {
   for (const double width_mps : {8e-3, 11e-3}) {
     const auto statistics = statistics_of({.width_mps = width_mps}, 20e-3, 13, 0.0, 1e-4);
@@ -284,7 +281,7 @@ TEST(Summary, CallsDeviationsALowerBoundWhereTheLawIsWiderThan10Mmps) {
   }
 }
 
-// What the scatter of the blocks does not show: 0.1 % of the level, 0.3 % of the stiffness, 0.3 %
+// What the scatter of the blocks does not show: 0.25 % of the level, 0.3 % of the stiffness, 0.3 %
 // of level / v_rms; of a curve 0.25 %, 3 % where it is slow as the width, and 15 % of what the
 // width hides.
 TEST(Summary, OfAnExactRecordDeviationsAreTheirFloors) {
@@ -292,12 +289,12 @@ TEST(Summary, OfAnExactRecordDeviationsAreTheirFloors) {
   statistics->header.velocity.sticking = 0;
   const Snapshot s = summary_of(*statistics);
   ASSERT_TRUE(s.valid);
-  EXPECT_NEAR(s.coulomb_n.std / s.coulomb_n.value, 0.0010, 2e-5);
+  EXPECT_NEAR(s.coulomb_n.std / s.coulomb_n.value, 0.0025, 2e-5);
   EXPECT_NEAR(s.stiffness_npm.std / s.stiffness_npm.value, 0.0030, 2e-5);
-  EXPECT_NEAR(s.coulomb_with_viscous_n.std / s.coulomb_with_viscous_n.value, 0.0010, 2e-5);
+  EXPECT_NEAR(s.coulomb_with_viscous_n.std / s.coulomb_with_viscous_n.value, 0.0025, 2e-5);
   EXPECT_NEAR(s.viscous_nspm.std * s.velocity_rms_mps / s.coulomb_with_viscous_n.value, 0.0030,
               2e-5);
-  EXPECT_NEAR(s.curve_std_at_zero_n / s.curve_force_at_zero_n, 0.0010, 2e-5);
+  EXPECT_NEAR(s.curve_std_at_zero_n / s.curve_force_at_zero_n, 0.0025, 2e-5);
   for (const CurvePoint& p : s.curve) {
     const double width = s.law_width_with_viscous_mps.value;
     const double near = width / p.velocity_mps;

@@ -67,8 +67,9 @@ TEST_P(NamesPlanted, WithItsSize) {
     EXPECT_GT(step.parameter[i].estimate.std, 0.0);
   }
   EXPECT_TRUE(found) << p.parameter;
-  // Level and spring are what they are beside the effect.
-  EXPECT_NEAR(e.final_coulomb_n.value, 8356.0, 0.03 * 8356.0);
+  // Level and spring are what they are beside the effect; a level that grows with the deflection is
+  // that at its mean, which such friction moves up.
+  EXPECT_NEAR(e.final_coulomb_n.value, 8356.0, 0.035 * 8356.0);
   EXPECT_NEAR(e.final_stiffness_npm.value, 5.26e6, 0.06 * 5.26e6);
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <tuple>
+#include <utility>
 
 namespace dampline::effect {
 namespace {
@@ -60,6 +61,25 @@ TEST(Conclusion, AModelIsPossibleWithFrictionAndASpringAboveNothing) {
     e.final_coulomb_n.value = coulomb;
     e.final_stiffness_npm.value = stiffness;
     EXPECT_EQ(is_possible(e), possible) << coulomb << ' ' << stiffness;
+  }
+}
+
+TEST(Conclusion, ADamperThatSurelyDrivesIsImpossible) {
+  Explanation e;
+  e.final_coulomb_n.value = e.final_stiffness_npm.value = 1.0;
+  e.step_count = 1;
+  Step& step = e.step[0];
+  step.parameter_count = 2;
+  step.parameter[0] = {"viscous_positive", {5.0, 1.0}, "N s/m"};
+  for (const auto& [effect, damps] :
+       {std::pair{Effect::kViscous, true}, std::pair{Effect::kAsymmetricViscous, true},
+        std::pair{Effect::kQuadraticDamping, true}, std::pair{Effect::kViscoelastic, true},
+        std::pair{Effect::kGainError, false}, std::pair{Effect::kProgressiveFriction, false}}) {
+    step.chosen.effect = effect;
+    step.parameter[1] = {"viscous_negative", {-1.9, 1.0}, "N s/m"};
+    EXPECT_TRUE(is_possible(e)) << name_of(effect);
+    step.parameter[1].estimate.value = -2.1;
+    EXPECT_EQ(is_possible(e), !damps) << name_of(effect);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -68,8 +69,68 @@ TEST(Rules, ImperfectionsOfWhatIsKnownAreNoEffects) {
 }
 
 TEST(Rules, ASkewBesideMemoryStandsInNobodysWay) {
-  EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.05, 10.0, 25.0)), Verdict::kNo);
-  EXPECT_EQ(later(Effect::kBacklash, step(Effect::kTimeSkew, 0.08, 10.0, 25.0)), Verdict::kYes);
+  const auto beside = [](Effect known, double gain) {
+    return later(known, step(Effect::kTimeSkew, gain, 10.0, 25.0));
+  };
+  EXPECT_EQ(beside(Effect::kPreslidingHysteresis, 0.05), Verdict::kNo);
+  EXPECT_EQ(beside(Effect::kPreslidingHysteresis, 0.08), Verdict::kYes);
+  EXPECT_EQ(beside(Effect::kBacklash, 0.19), Verdict::kNo);
+  EXPECT_EQ(beside(Effect::kBacklash, 0.21), Verdict::kYes);
+}
+
+// Beside a damper of 5 +- 2: turned round by less than two deviations it may be none.
+TEST(Rules, WhatJoinsMustNotTurnTheSignOfAnother) {
+  Candidate known;
+  known.effect = Effect::kViscous;
+  known.count = 1;
+  known.sign = 1;
+  const Model model = Model{}.with(known);
+  const auto fit = std::make_unique<ModelFit>();
+  fit->covariance(ModelFit::kFirstEffect, ModelFit::kFirstEffect) = 4.0;
+  for (const double damping : {5.0, 0.0, -3.9}) {
+    fit->theta[ModelFit::kFirstEffect] = damping;
+    EXPECT_TRUE(is_plausible(model, *fit)) << damping;
+  }
+  fit->theta[ModelFit::kFirstEffect] = -4.1;
+  EXPECT_FALSE(is_plausible(model, *fit));
+}
+
+// Of the mean of both directions, 3 +- 1, and half their difference.
+TEST(Rules, NoDirectionOfADamperMayDriveForSure) {
+  Candidate known;
+  known.effect = Effect::kAsymmetricViscous;
+  known.count = 2;
+  const Model model = Model{}.with(known);
+  const auto fit = std::make_unique<ModelFit>();
+  constexpr int kMean = ModelFit::kFirstEffect + 1;
+  fit->covariance(kMean, kMean) = 1.0;
+  fit->theta[kMean] = 3.0;
+  for (const double half : {4.9, -4.9}) {
+    fit->theta[ModelFit::kFirstEffect] = half;
+    EXPECT_TRUE(is_plausible(model, *fit)) << half;
+  }
+  for (const double half : {5.1, -5.1}) {
+    fit->theta[ModelFit::kFirstEffect] = half;
+    EXPECT_FALSE(is_plausible(model, *fit)) << half;
+  }
+}
+
+TEST(Rules, AStopWithinTheMotionIsTheKinkOfAnUnevenSpring) {
+  Grids grids;
+  grids.bump_gap[2] = 0.9;
+  grids.bump_gap[3] = 1.1;
+  Candidate stop;
+  stop.effect = Effect::kBumpStop;
+  const auto is_kink = [&](Effect beside, std::uint8_t variant) {
+    stop.variant = variant;
+    return is_kink_of_spring(with(beside), stop, grids);
+  };
+  EXPECT_TRUE(is_kink(Effect::kAsymmetricStiffness, 2));
+  EXPECT_TRUE(is_kink(Effect::kQuadraticStiffness, 2));
+  EXPECT_FALSE(is_kink(Effect::kAsymmetricStiffness, 3));
+  EXPECT_FALSE(is_kink(Effect::kCubicStiffness, 2));
+  stop.effect = Effect::kBacklash;
+  EXPECT_FALSE(is_kink(Effect::kAsymmetricStiffness, 2));
 }
 
 TEST(Rules, ALateChannelThatWasSetRightHidesNothing) {
@@ -199,7 +260,15 @@ TEST(Rules, AGainCountsFromWhatTheKnownEffectsLeave) {
   expect_from(with(Effect::kViscous), Effect::kBacklash, 0.035);
   expect_from(with(Effect::kTimeSkew), Effect::kTimeSkew, 0.06);
   expect_from(with(Effect::kTimeSkew), Effect::kBacklash, 0.06);
-  expect_from(with(Effect::kBacklash), Effect::kTimeSkew, 0.065);
+  expect_from(with(Effect::kPreslidingHysteresis), Effect::kTimeSkew, 0.065);
+  expect_from(with(Effect::kBacklash), Effect::kTimeSkew, 0.20);  // of the frame
+  expect_from(with(Effect::kBacklash), Effect::kGainError, 0.015);
+  for (const Effect of_rate : {Effect::kViscous, Effect::kAsymmetricViscous, Effect::kStribeck,
+                               Effect::kQuadraticDamping, Effect::kViscoelastic})
+    expect_from(with(Effect::kBacklash), of_rate, 0.10);
+  for (const Effect spring : {Effect::kAsymmetricStiffness, Effect::kQuadraticStiffness})
+    for (const Effect bent : {Effect::kBumpStop, Effect::kCubicStiffness})
+      expect_from(with(spring), bent, 0.06);
   expect_from(with(Effect::kTimeSkew), Effect::kGainError, 0.10);
   Candidate progressive;
   progressive.effect = Effect::kProgressiveFriction;

@@ -282,6 +282,8 @@ void put_final(Explanation& e, RunResult& result) {
   if (adds(e)) {
     result.base = BaseLaw{e.base.terms, e.base.parameters, result.fit};
     result.std_is_lower_bound = false;  // which was said of the base's
+    result.fit.law_width_share.reset();
+    result.fit.viscous.reset();
   }
   result.model = e.final.terms;
   result.parameters = e.final.parameters;

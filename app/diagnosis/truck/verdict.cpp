@@ -23,6 +23,7 @@ constexpr double kForeign = 0.03;        // of the frame's power at 1.2 Hz
 constexpr double kOffCentre = 0.12;      // of half the difference: 0.05 m off, wheelbase 1.8 m
 constexpr double kOffCentreShare = 0.3;  // of what the mean leaves; sound records reach 0.27
 constexpr double kLittleOff = 0.03;
+constexpr double kLateAlike = 0.7;      // of both wheelsets' lateness
 constexpr double kRateExcused = 0.003;  // of the delay, as the guard asks for
 constexpr double kNoGain = 0.5;         // of a gain that is named: the powers show less of it
 
@@ -78,6 +79,13 @@ void name_misplaced(Explained& out) noexcept {
   const bool off = *kind == FaultKind::kOffCentre;
   const double share = off ? out.circumstances.faults.misplacement.difference : left_nmse(out);
   name_and_withhold(*kind, FaultChannel::kFrame, 100.0 * share, out);
+}
+
+/// Two wheelsets that are late alike are a frame that is early: one channel, and where that one
+/// would not do, none.
+bool are_late_alike(const LateEstimates& late_s) noexcept {
+  const double ratio = late_s[effect::kWheelset1Form].value / late_s[effect::kWheelset2Form].value;
+  return ratio > kLateAlike && ratio < 1.0 / kLateAlike;
 }
 
 bool are_faint(const effect::Explanation& e) noexcept {
@@ -171,12 +179,18 @@ std::size_t needless_step(const effect::Explanation& e) noexcept {
     const effect::Step& step = e.step[i];
     const Estimate& first = step.parameter[0].estimate;
     if (is_late(step) && std::abs(first.value) < 2.0 * first.std) return i;
+    // Of friction that falls with speed, the part that falls.
+    if (step.chosen.effect == effect::Effect::kStribeck && first.value < first.std) return i;
     if (is_below_nothing(step) || is_below_floor(step, i == 0, e.floor_nmse)) return i;
   }
   return e.step_count;
 }
 
 bool take_needless(const effect::Explanation& e, Needless& known) noexcept {
+  if (are_late_alike(late_of(e))) {
+    known.effect[static_cast<std::size_t>(effect::Effect::kTimeSkew)] = true;
+    return true;
+  }
   const std::size_t needless = needless_step(e);
   if (needless == e.step_count) return false;
   const effect::Step& step = e.step[needless];

@@ -16,7 +16,7 @@ namespace {
 
 // Errors that the scatter of the blocks does not show, of the value itself: discretisation of the
 // law, the shape of the law near v = 0, correlated velocity errors.
-constexpr double kCoulombFloor = 0.0010;
+constexpr double kCoulombFloor = 0.0025;
 constexpr double kStiffnessFloor = 0.0030;
 constexpr double kViscousFloor = 0.0030;  // of Fc / v_rms
 // Of a curve: the velocity's own error bends it, the more the nearer its width.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "dampline/effect/conclusion.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace dampline::effect {
@@ -9,6 +10,18 @@ namespace {
 constexpr double kUnexplainedAbove = 1.25;  // of the floor, without a single step
 constexpr double kUnexplainedAboveWithImpacts = 1.5;
 constexpr std::uint64_t kImpacts = 10;
+constexpr double kDrivesZ = 2.0;
+
+/// Damping that surely gives energy.
+bool drives(const Step& step) noexcept {
+  const Effect effect = step.chosen.effect;
+  const bool damps = effect == Effect::kViscous || effect == Effect::kAsymmetricViscous ||
+                     effect == Effect::kQuadraticDamping || effect == Effect::kViscoelastic;
+  const auto end = step.parameter.begin() + static_cast<std::ptrdiff_t>(step.parameter_count);
+  return damps && std::any_of(step.parameter.begin(), end, [](const auto& parameter) {
+           return parameter.estimate.value < -kDrivesZ * parameter.estimate.std;
+         });
+}
 
 }  // namespace
 
@@ -39,7 +52,9 @@ double floor_ratio(const Explanation& e) noexcept {
 }
 
 bool is_possible(const Explanation& e) noexcept {
-  return e.final_coulomb_n.value > 0.0 && e.final_stiffness_npm.value > 0.0;
+  const auto end = e.step.begin() + static_cast<std::ptrdiff_t>(e.step_count);
+  return e.final_coulomb_n.value > 0.0 && e.final_stiffness_npm.value > 0.0 &&
+         std::none_of(e.step.begin(), end, drives);
 }
 
 void conclude(std::uint64_t impacts, Explanation& e) noexcept {

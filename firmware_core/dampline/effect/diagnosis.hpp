@@ -19,6 +19,7 @@ struct Sums {
   const ImpulseMeter& impulses;
   const Grids& grids;
   VelocityError velocity;
+  double deflection_rms_m{0.0};  ///< over the moving samples
 };
 
 /// The sums that judge every candidate effect, gathered beside the estimate: the Estimator's
@@ -59,7 +60,7 @@ class Diagnosis {
     return {sample_rate_hz_, velocity_rms_mps()};
   }
   [[nodiscard]] Sums sums() const noexcept {
-    return {store_, impulses_, grids(), velocity_error()};
+    return {store_, impulses_, grids(), velocity_error(), deflection_rms_m()};
   }
 
  private:

@@ -86,8 +86,10 @@ void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& 
     const Candidate& candidate = candidates_.item[i];
     if (!has_room(model, candidate, two_late_)) continue;
     if (!allowed_[static_cast<std::size_t>(candidate.effect)]) continue;
-    const ModelFit fit = fitter_.fit(model.with(candidate));
-    if (!fit.ok || !is_plausible(candidate, fit, now.terms)) continue;
+    if (is_kink_of_spring(model, candidate, grids_)) continue;
+    const Model with = model.with(candidate);
+    const ModelFit fit = fitter_.fit(with);
+    if (!fit.ok || !is_plausible(candidate, fit, now.terms) || !is_plausible(with, fit)) continue;
     const bool tiny = fit.held_out_nmse > (1.0 - kSkewGain) * now.held_out_nmse;
     if (candidate.effect == Effect::kTimeSkew && tiny) continue;
     Best& b = best[static_cast<std::size_t>(candidate.effect)];
@@ -173,9 +175,11 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
     const int term = first_term(out.model, out.base_count + i);
     for (std::size_t c = 0; c < candidates_.count; ++c) {
       if (!is_of_grid(candidates_.item[c], before)) continue;
+      if (is_kink_of_spring(out.model, candidates_.item[c], grids_)) continue;
       place = candidates_.item[c];
       const ModelFit fit = fitter_.fit(out.model);
       if (!fit.ok || !is_plausible(place, fit, term)) continue;
+      if (!is_plausible(out.model, fit)) continue;
       const double judged = handicap(place) * fit.held_out_nmse;
       if (judged < kReadjusted * best.judged) best = {true, place, fit.held_out_nmse, judged};
     }
@@ -229,6 +233,7 @@ Explanation Explainer::explain(const Sums& sums, const ExplainerConfig& config) 
   Explanation out;
   out.grids = grids_ = sums.grids;
   detail_.velocity = sums.velocity;
+  detail_.deflection_rms_m = sums.deflection_rms_m;
   const GramStore& store = sums.store;
   if (store.count() < kFewestEntries || !evidence_.load(store)) return out;
   allowed_ = config.allowed;

@@ -78,6 +78,40 @@ LawErrors errors_beside(const Model& model) noexcept {
   return out;
 }
 
+/// Friction holds a truck beside its middle for seconds at a time, and the deflection lacks what is
+/// so slow: this share of its power for each time that friction is the spring's rms force. A law
+/// that bends over the deflection shows the missing part in friction or spring.
+constexpr double kHeldShare = 0.04;
+constexpr double kMostHeld = 0.3;  // of friction or spring
+
+/// What friction and spring come out too high by, of themselves; as much may be left of it.
+struct HeldErrors {
+  double coulomb{0.0}, stiffness{0.0};
+};
+Estimate without(double held, const Estimate& e) noexcept {
+  return {(1.0 - held) * e.value, std::hypot(e.std, held * e.value)};
+}
+
+/// `friction`, `stiffness`: of one unit of mass.
+HeldErrors held_errors(const Detail& d, double friction, double stiffness) noexcept {
+  const double y_m = d.deflection_rms_m;
+  if (!(y_m > 0.0 && friction > 0.0 && stiffness > 0.0)) return {};
+  const double lost = kHeldShare * friction / (stiffness * y_m);
+  HeldErrors out;
+  int term = ModelFit::kFirstEffect;
+  for (std::size_t i = 0; i < d.model.count; ++i) {
+    const Candidate& c = d.model.effect[i];
+    if (c.effect == Effect::kProgressiveFriction && c.form == kAbsoluteForm)
+      out.coulomb = lost * y_m * d.fit.theta[term] / friction;
+    if (c.effect == Effect::kCubicStiffness)
+      out.stiffness = 3.0 * lost * y_m * y_m * d.fit.theta[term] / stiffness;
+    term += static_cast<int>(c.count);
+  }
+  out.coulomb = std::clamp(out.coulomb, -kMostHeld, kMostHeld);
+  out.stiffness = std::clamp(out.stiffness, -kMostHeld, kMostHeld);
+  return out;
+}
+
 /// One effect of a model, and where its unknowns begin.
 struct Part {
   const ModelFit& fit;
@@ -335,10 +369,12 @@ BaseParameters base_in(const Detail& d, List& list) noexcept {
   // Of the friction, what has a width of v = 0; memory has none.
   const double jumps = d.mass_kg * d.fit.theta[ModelFit::kCoulomb] / friction.value;
   const double width_mps = d.fit.width_mps * std::sqrt(std::clamp(jumps, 0.0, 1.0));
-  return {d.velocity.coulomb(list.add("coulomb", friction, errors.coulomb), width_mps),
-          d.velocity.stiffness(
-              {slow.value, std::hypot(d.factor * slow.std(d.slow), errors.stiffness * slow.value)},
-              width_mps)};
+  const HeldErrors held = held_errors(d, friction.value / d.mass_kg, slow.value / d.mass_kg);
+  const Estimate coulomb = list.add("coulomb", friction, errors.coulomb);
+  const Estimate stiffness{slow.value,
+                           std::hypot(d.factor * slow.std(d.slow), errors.stiffness * slow.value)};
+  return {d.velocity.coulomb(without(held.coulomb, coulomb), width_mps),
+          d.velocity.stiffness(without(held.stiffness, stiffness), width_mps)};
 }
 
 }  // namespace

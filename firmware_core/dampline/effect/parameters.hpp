@@ -53,6 +53,7 @@ struct Detail {
   double factor{1.0};  ///< on deviations, for few entries
   double mass_kg{0.0};
   VelocityError velocity;
+  double deflection_rms_m{0.0};
 };
 
 /// Friction and spring of a model.

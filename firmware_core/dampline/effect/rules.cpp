@@ -18,12 +18,16 @@ constexpr double kLaterSensorGain = 0.015;  // beside a law with memory
 constexpr double kLaterMemoryGain = 0.035;
 constexpr double kSkewBesideMemoryGain = 0.065;
 constexpr double kLookalikeGain = 0.06;
+constexpr double kFrameBesideBacklashGain = 0.20;
+constexpr double kRateBesideBacklashGain = 0.10;  // of what depends on speed or time
+constexpr double kKinkWithin = 1.0;               // rms of y
 constexpr double kProductGain = 0.15;         // of springs beside two laws whose product is missing
 constexpr double kGainBesideSkewGain = 0.10;  // of the same channel
 constexpr double kLaterT = 3.5;
 constexpr double kLaterZ = 10.0;
 constexpr double kLaterClearT = 2.5;  // with kSmallGain and kLaterClearZ
 constexpr double kLaterClearZ = 8.0;
+constexpr double kSignZ = 2.0;   // of a sign
 constexpr double kFaintZ = 4.2;  // with kFaintT
 constexpr double kFaintT = 2.5;
 constexpr double kFaintFrictionGain = 0.0015;  // with kFaintFrictionT and kFaintFrictionZ
@@ -44,6 +48,19 @@ bool is_even_spring(Effect effect) noexcept {
 bool is_bent_spring(Effect effect) noexcept {
   return effect == Effect::kBumpStop || effect == Effect::kCubicStiffness;
 }
+bool is_of_rate(Effect effect) noexcept {
+  return effect == Effect::kViscous || effect == Effect::kAsymmetricViscous ||
+         effect == Effect::kQuadraticDamping || effect == Effect::kViscoelastic ||
+         effect == Effect::kStribeck;
+}
+
+/// What takes up a gap yields: its force comes later than the library's, like a late frame's, and
+/// over some time.
+double gain_beside_backlash(const Candidate& candidate) noexcept {
+  if (candidate.effect == Effect::kTimeSkew)
+    return candidate.form == kFrameForm ? kFrameBesideBacklashGain : kSkewBesideMemoryGain;
+  return is_of_rate(candidate.effect) ? kRateBesideBacklashGain : 0.0;
+}
 
 /// The gain that a later effect needs beside one that is in the model. What a late channel leaves,
 /// in second order, looks like a mode or like friction that builds up, and its friction, which
@@ -62,9 +79,12 @@ double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept
   if (known == Effect::kTimeSkew && (effect == Effect::kUnmodelledMode || has_memory(effect)))
     return kLookalikeGain;
   if (is_bent_spring(known) && is_even_spring(effect)) return kLaterMemoryGain;
+  if (is_even_spring(known) && is_bent_spring(effect)) return kLookalikeGain;
   if (has_memory(effect)) return kLaterMemoryGain;
   if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
   if (!has_memory(known)) return kLaterGain;
+  if (known == Effect::kBacklash && gain_beside_backlash(candidate) > 0.0)
+    return gain_beside_backlash(candidate);
   if (effect == Effect::kTimeSkew) return kSkewBesideMemoryGain;
   const bool directed =
       effect == Effect::kProgressiveFriction || effect == Effect::kAsymmetricViscous;
@@ -176,6 +196,27 @@ bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noe
     return fit.theta[term + 1] > std::abs(theta);
   }
   return true;
+}
+
+bool is_plausible(const Model& model, const ModelFit& fit) noexcept {
+  int term = ModelFit::kFirstEffect;
+  for (std::size_t i = 0; i < model.count; ++i) {
+    const Candidate& known = model.effect[i];
+    if (known.count == 0) continue;
+    const bool both = known.effect == Effect::kAsymmetricViscous;
+    const int at = both ? term + 1 : term;
+    const double against =
+        both ? std::abs(fit.theta[term]) - fit.theta[at] : -known.sign * fit.theta[at];
+    if (against > kSignZ * std::sqrt(std::max(fit.covariance(at, at), 0.0))) return false;
+    term += static_cast<int>(known.count);
+  }
+  return true;
+}
+
+bool is_kink_of_spring(const Model& model, const Candidate& candidate,
+                       const Grids& grids) noexcept {
+  return candidate.effect == Effect::kBumpStop && grids.bump_gap[candidate.variant] < kKinkWithin &&
+         has_any(model, is_even_spring);
 }
 
 Verdict judge_step(const Model& model, bool first, bool best, const Step& step) noexcept {

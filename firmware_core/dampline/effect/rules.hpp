@@ -17,6 +17,12 @@ namespace dampline::effect {
 /// Signs that physics asks for: of the effect's first coefficient, the `term`-th of the fit, and
 /// friction that does not drive.
 [[nodiscard]] bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noexcept;
+/// The same of every effect in a model, as far as its sign is sure: what joins must not turn it.
+[[nodiscard]] bool is_plausible(const Model& model, const ModelFit& fit) noexcept;
+/// A stop within the motion's own size, beside a spring that differs by direction: the deflection
+/// comes without its mean, and the spring bends elsewhere.
+[[nodiscard]] bool is_kink_of_spring(const Model& model, const Candidate& candidate,
+                                     const Grids& grids) noexcept;
 
 /// What becomes of a candidate: it joins the model, the next best is looked at, or nothing does.
 enum class Verdict : std::uint8_t { kYes, kNo, kStop };

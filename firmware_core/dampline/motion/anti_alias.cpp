@@ -27,11 +27,12 @@ double lift(double relative, int order, double share, double beyond) noexcept {
 
 double VelocityLift::share_of_loss(const AntiAliasConfig& filter) noexcept {
   constexpr double kThinned = 0.75;
+  constexpr double kFolded = 0.60;
   constexpr double kHighCornerHz = 100.0;
   constexpr double kLowCornerHz = 76.0;
   const double low =
       std::clamp((kHighCornerHz - filter.corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
-  return std::lerp(filter.thinned ? kThinned : 0.22, 1.0, low);
+  return std::lerp(filter.thinned ? kThinned : kFolded, 1.0, low);
 }
 
 VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz) noexcept {

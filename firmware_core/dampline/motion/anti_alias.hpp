@@ -62,13 +62,13 @@ struct WhiteAndFolded {
 };
 
 /// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter
-/// has lowered, by a share of the loss in decibels, up to the corner: 22 % at 100 Hz, 75 % where
+/// has lowered, by a share of the loss in decibels, up to the corner: 60 % at 100 Hz, 75 % where
 /// nothing is folded, more below, all of it from 76 Hz down, since wheelsets shake most between 45
 /// and 75 Hz.
 ///
 /// What is linear in the accelerations commutes with the anti-aliasing filter and needs nothing;
 /// friction does not. Left alone, sign(v) of a velocity without its fast part puts the friction
-/// level up to 0.3 % low (100 Hz at 300 samples a second); lifted by the whole loss, up to 0.8 %
+/// level 0.1 to 1.2 % low (100 Hz at 300 samples a second); lifted by the whole loss, up to 0.7 %
 /// high. Phase is left as it is: undoing it biases stiffness by 0.5 to 2 %, because the filter's
 /// delay of fast parts offsets the delay that smoothing gives to the kinks of v at its reversals.
 /// Figures and method: docs/adr/0003-anti-alias.md.
