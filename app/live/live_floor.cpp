@@ -7,7 +7,8 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kAlike = 0.02;  // of what a law or a sensor's noise may have changed by
+constexpr double kAlike = 0.02;      // of what a law or a sensor's noise may have changed by
+constexpr double kFoundAlike = 0.1;  // and of what was found beside it
 
 bool near(double one, double other, double size) noexcept {
   return std::abs(one - other) <= kAlike * size;
@@ -20,6 +21,24 @@ bool near(const std::array<double, kChannels>& one,
                     [](double a, double b) { return near(a, b); });
 }
 
+/// Friction that falls with speed is never sure of itself: what it does is in the other numbers.
+bool near(const effect::FoundForce& one, const effect::FoundForce& other) noexcept {
+  const auto numbers = [](const effect::FoundForce& f) {
+    return std::array{f.viscous_up_per_s, f.viscous_down_per_s,
+                      f.quadratic_per_m,  f.grows_per_m,
+                      f.widens_per_m,     f.square_per_m_s2,
+                      f.cube_per_m2_s2,   f.magnitude_per_s2,
+                      f.stop_up_per_s2,   f.stop_down_per_s2,
+                      f.stop_m,           f.relaxing_per_s2,
+                      f.relaxing_s,       f.falls_mps2 > 0.0 ? 1.0 : 0.0};
+  };
+  const auto a = numbers(one);
+  const auto b = numbers(other);
+  return std::equal(a.begin(), a.end(), b.begin(), [](double p, double q) {
+    return std::abs(p - q) <= kFoundAlike * std::max(std::abs(p), std::abs(q));
+  });
+}
+
 bool near(const effect::SurrogateConfig& one, const effect::SurrogateConfig& other) noexcept {
   constexpr double kUsualMps = 0.05;  // where a viscous force counts as much as friction
   return near(one.coulomb_mps2, other.coulomb_mps2) &&
@@ -28,7 +47,7 @@ bool near(const effect::SurrogateConfig& one, const effect::SurrogateConfig& oth
               std::max(one.viscous_per_s, one.coulomb_mps2 / kUsualMps)) &&
          one.memory.is_play == other.memory.is_play &&
          near(one.memory.force_mps2, other.memory.force_mps2) &&
-         near(one.memory.length_m, other.memory.length_m) &&
+         near(one.memory.length_m, other.memory.length_m) && near(one.found, other.found) &&
          near(one.noise_mps2, other.noise_mps2) && near(one.bridged_mps2, other.bridged_mps2);
 }
 
@@ -64,7 +83,7 @@ void LiveFloor::keep(const Sample& sample) {
 }
 
 bool LiveFloor::are_alike(const Law& one, const Law& other) noexcept {
-  return near(one.declared, other.declared) && near(one.remembering, other.remembering);
+  return near(one.declared, other.declared) && near(one.found, other.found);
 }
 
 void LiveFloor::begin(const Law& law, const effect::Explanation& explanation) {
@@ -80,7 +99,7 @@ void LiveFloor::hold_against(const effect::GramStore& sums, const GuardedNoise& 
   const effect::Explanation& e = out.explanation;
   const effect::SurrogateConfig declared =
       surrogate_config(core_, e, noise_of_record(guarded, noise_, core_.screen.step_mps2));
-  const Law law{declared, is_physical(declared) ? with_memory(declared, e) : declared};
+  const Law law{declared, is_physical(declared) ? with_found(declared, e) : declared};
   if (!any_law_ || !are_alike(law, law_)) begin(law, e);
   surrogates_->gather();
   surrogates_->hold_against(explainer, sums.rows(), out);

@@ -42,7 +42,7 @@ class LiveFloor {
  private:
   struct Law {
     effect::SurrogateConfig declared;
-    effect::SurrogateConfig remembering;
+    effect::SurrogateConfig found;
   };
   static bool are_alike(const Law& one, const Law& other) noexcept;
   void keep(const Sample& sample);

@@ -38,6 +38,11 @@ inline constexpr std::size_t kEffects = static_cast<std::size_t>(Effect::kUnknow
   return effect == Effect::kPreslidingHysteresis || effect == Effect::kBacklash;
 }
 
+/// A part of the suspension's force: neither another motion nor a sensor's fault.
+[[nodiscard]] constexpr bool is_of_law(Effect effect) noexcept {
+  return effect < Effect::kUnmodelledMode;
+}
+
 /// The name that configuration, results and simulation use.
 [[nodiscard]] const char* name_of(Effect effect) noexcept;
 

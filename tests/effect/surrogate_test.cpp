@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace dampline::effect {
 namespace {
@@ -89,6 +91,108 @@ TEST(Surrogate, KeepsGapsAndWhatIsNoNumber) {
     ++made;
   }
   EXPECT_EQ(made, 13 + 1 + 12);  // 24 samples to either side of what is between two
+}
+
+/// A tone that grows for a second.
+double growing_tone(double t_s) {
+  return 2.0 * std::sin(2.0 * M_PI * 2.1 * t_s) * std::min(1.0, t_s);
+}
+
+/// The worst error of a surrogate's frame, of its rms, beside the same motion by small steps of
+/// another kind. `force`: of y, v and the stretch of a spring that relaxes over 0.03 s.
+template <class Force>
+double error_beside(const SurrogateConfig& config, const Force& force) {
+  constexpr int kSteps = 400;  // a sample
+  constexpr double kSmallS = 1.0 / (kSurrogateHz * kSteps);
+  Surrogate surrogate{config};
+  std::vector<double> truth;
+  double y = 0.0, v = 0.0, stretch = 0.0, squares = 0.0, worst = 0.0;
+  for (int n = 0; n < kSteps * 2400; ++n) {
+    const double frame_mps2 = -force(y, v, stretch);
+    if (n % kSteps == 0) truth.push_back(frame_mps2);
+    squares += frame_mps2 * frame_mps2 / (kSteps * 2400);
+    v += kSmallS * 2.0 * (frame_mps2 - growing_tone(kSmallS * n));
+    y += kSmallS * v;
+    stretch += kSmallS * (v - stretch / 0.03);
+  }
+  for (int n = 0; n < 2399; ++n) {
+    const auto out = surrogate.next(wheelsets_at(n, growing_tone(n / kSurrogateHz)));
+    if (!out || n < 300) continue;
+    worst =
+        std::max(worst, std::abs(out->accel_mps2[0] - truth[static_cast<std::size_t>(out->tick)]));
+  }
+  return worst / std::sqrt(squares);
+}
+
+TEST(Surrogate, HasTheSpringsThatWereFound) {
+  SurrogateConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.viscous_per_s = 3.0;
+  const auto error = [&](const auto& bent) {
+    return error_beside(config,
+                        [&](double y, double v, double) { return 141.4 * y + 3.0 * v + bent(y); });
+  };
+  config.found.cube_per_m2_s2 = 4e5;
+  EXPECT_LT(error([](double y) { return 4e5 * y * y * y; }), 0.01);
+  config.found = {.square_per_m_s2 = 2e3};
+  EXPECT_LT(error([](double y) { return 2e3 * y * y; }), 0.01);
+  config.found = {.magnitude_per_s2 = 30.0};
+  EXPECT_LT(error([](double y) { return 30.0 * std::abs(y); }), 0.01);
+  config.found = {.stop_up_per_s2 = 200.0, .stop_down_per_s2 = 100.0, .stop_m = 0.01};
+  EXPECT_LT(error([](double y) {
+              return 200.0 * std::max(y - 0.01, 0.0) - 100.0 * std::max(-y - 0.01, 0.0);
+            }),
+            0.01);
+}
+
+TEST(Surrogate, HasTheDampingThatWasFound) {
+  SurrogateConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.found = {.viscous_up_per_s = 4.0, .viscous_down_per_s = 2.0};
+  EXPECT_LT(error_beside(config, [](double y, double v,
+                                    double) { return 141.4 * y + (v > 0.0 ? 4.0 : 2.0) * v; }),
+            0.01);
+  config.found = {.quadratic_per_m = 20.0};
+  EXPECT_LT(error_beside(config, [](double y, double v,
+                                    double) { return 141.4 * y + 20.0 * v * std::abs(v); }),
+            0.01);
+  config.viscous_per_s = 1.0;
+  config.found = {.relaxing_per_s2 = 80.0, .relaxing_s = 0.03};
+  EXPECT_LT(
+      error_beside(config, [](double y, double v, double x) { return 141.4 * y + v + 80.0 * x; }),
+      0.01);
+}
+
+TEST(Surrogate, HasTheFrictionThatWasFound) {
+  SurrogateConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.coulomb_mps2 = 0.4;
+  const auto error = [&](const auto& level) {
+    return error_beside(config, [&](double y, double v, double) {
+      return 141.4 * y + 0.4 * level(y, v) * std::tanh(v / 5e-4);
+    });
+  };
+  config.found.grows_per_m = 20.0;
+  EXPECT_LT(error([](double y, double) { return 1.0 + 20.0 * y; }), 0.05);
+  config.found = {.widens_per_m = 30.0};
+  EXPECT_LT(error([](double y, double) { return 1.0 + 30.0 * std::abs(y); }), 0.05);
+  config.found = {.falls_mps2 = 0.12, .falls_over_mps = 0.02};
+  EXPECT_LT(error([](double, double v) { return 1.0 + 0.3 * std::exp(-std::abs(v) / 0.02); }),
+            0.05);
+}
+
+// Beyond 7.7 mm the cubic part would push outwards.
+TEST(Surrogate, OfASpringThatSoftensStaysWhereItIs) {
+  SurrogateConfig config;
+  config.stiffness_per_s2 = 141.4;
+  config.coulomb_mps2 = 0.4;
+  config.found.cube_per_m2_s2 = -2.4e6;
+  Surrogate surrogate{config};
+  for (int n = 0; n < 3000; ++n) {
+    const auto out = surrogate.next(wheelsets_at(n, growing_tone(n / kSurrogateHz)));
+    if (!out) continue;
+    ASSERT_LT(std::abs(out->accel_mps2[0]), 2.0) << n;
+  }
 }
 
 TEST(Surrogate, BuildsItsFrictionUpOverDahlsLength) {

@@ -230,14 +230,14 @@ void expect_change(const rig::Explanation& found, const std::string& effect, dou
   EXPECT_STREQ(found.verdict(), "partly_explained");
 }
 
-TEST(ARig, WhoseGapGrowsOrBeginsChanges) {
+TEST(ARigNightly, WhoseGapGrowsOrBeginsChanges) {
   expect_change(explained(changing_at(25.0, backlash(0.002), backlash(0.005)), false, 71),
                 "backlash", 0.003);
   expect_change(explained(changing_at(25.0, simple(), backlash(0.003)), false, 72), "backlash",
                 0.003);
 }
 
-TEST(ARig, WhoseFrictionBuildsUpOverAnotherTravelChanges) {
+TEST(ARigNightly, WhoseFrictionBuildsUpOverAnotherTravelChanges) {
   expect_change(explained(changing_at(25.0, presliding(0.0006), presliding(0.003)), false, 73),
                 "presliding_hysteresis", 0.0024);
 }

@@ -124,7 +124,7 @@ class CloserLook {
                               const ChannelLateness& lateness, LateEstimates& left) {
     TruckPassOptions reading{grids, lateness, options_.show_progress, {}, known.other.get()};
     const effect::SurrogateConfig law =
-        with_memory(surrogate_config(core_, known.explanation, noise_), known.explanation);
+        with_found(surrogate_config(core_, known.explanation, noise_), known.explanation);
     const bool late = late_channels(known.explanation).count > 0;
     std::unique_ptr<SurrogatePass> surrogate;
     if (late && is_physical(law)) surrogate = std::make_unique<SurrogatePass>(core_, law, grids);
@@ -148,7 +148,7 @@ class CloserLook {
     if (surrogate == nullptr) return out;
     surrogate->finish();
     const LateEstimates bias =
-        explainer_.lateness(surrogate->diagnosis(), effect::remembering_part(e), late);
+        explainer_.lateness(surrogate->diagnosis(), effect::law_part(e), late);
     for (std::size_t c = 0; c < kChannels; ++c)
       out[c] = {out[c].value - bias[c].value, std::hypot(out[c].std, bias[c].std)};
     return out;

@@ -73,15 +73,84 @@ effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effe
   return out;
 }
 
-effect::SurrogateConfig with_memory(effect::SurrogateConfig out, const effect::Explanation& e) {
-  const double mass_kg = e.final_coulomb_n.value / out.coulomb_mps2;
+namespace {
+
+/// Parameters of a step, per unit of mass.
+struct Parts {
+  const effect::Step& step;
+  double mass_kg;
+  [[nodiscard]] double plain(std::size_t i) const { return step.parameter[i].estimate.value; }
+  [[nodiscard]] double force(std::size_t i) const { return plain(i) / mass_kg; }
+};
+
+void add_memory(const Parts& p, effect::SurrogateConfig& out) {
+  if (out.memory.force_mps2 > 0.0) return;
+  out.memory = {p.step.chosen.effect == effect::Effect::kBacklash, p.force(0), p.plain(1)};
+  out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
+}
+
+void add_damping(const Parts& p, effect::FoundForce& out) {
+  switch (p.step.chosen.effect) {
+    case effect::Effect::kViscous:
+    case effect::Effect::kAsymmetricViscous:
+      out.viscous_up_per_s = p.force(0);
+      out.viscous_down_per_s = p.force(p.step.parameter_count - 1);
+      return;
+    case effect::Effect::kQuadraticDamping:
+      out.quadratic_per_m = p.force(0);
+      return;
+    case effect::Effect::kViscoelastic:
+      out.relaxing_per_s2 = p.force(0);
+      out.relaxing_s = p.plain(1);
+      return;
+    default:
+      return;
+  }
+}
+
+void add_friction(const Parts& p, double coulomb_mps2, effect::FoundForce& out) {
+  if (p.step.chosen.effect == effect::Effect::kProgressiveFriction) {
+    const bool absolute = p.step.chosen.form == effect::kAbsoluteForm;
+    (absolute ? out.widens_per_m : out.grows_per_m) = 1.0 / p.plain(0);
+  }
+  if (p.step.chosen.effect == effect::Effect::kStribeck) {
+    out.falls_mps2 = p.plain(0) * coulomb_mps2;
+    out.falls_over_mps = p.plain(1);
+  }
+}
+
+void add_spring(const Parts& p, effect::FoundForce& out) {
+  switch (p.step.chosen.effect) {
+    case effect::Effect::kCubicStiffness:
+      out.cube_per_m2_s2 = p.force(0);
+      return;
+    case effect::Effect::kQuadraticStiffness:
+      out.square_per_m_s2 = p.force(0);
+      return;
+    case effect::Effect::kAsymmetricStiffness:
+      out.magnitude_per_s2 = 0.5 * p.force(0);
+      return;
+    case effect::Effect::kBumpStop:
+      if (p.step.chosen.form != effect::kOneSidedDown) out.stop_up_per_s2 = p.force(0);
+      if (p.step.chosen.form != effect::kOneSidedUp) out.stop_down_per_s2 = p.force(0);
+      out.stop_m = p.plain(1);
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace
+
+effect::SurrogateConfig with_found(effect::SurrogateConfig out, const effect::Explanation& e) {
+  const double coulomb_mps2 = out.coulomb_mps2;
+  const double mass_kg = e.final_coulomb_n.value / coulomb_mps2;
   for (std::size_t i = 0; i < e.step_count; ++i) {
-    if (!effect::has_memory(e.step[i].chosen.effect)) continue;
-    const auto& parameter = e.step[i].parameter;  // force and length
-    out.memory = {e.step[i].chosen.effect == effect::Effect::kBacklash,
-                  parameter[0].estimate.value / mass_kg, parameter[1].estimate.value};
-    out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
-    return out;
+    const Parts parts{e.step[i], mass_kg};
+    if (effect::has_memory(e.step[i].chosen.effect)) add_memory(parts, out);
+    add_damping(parts, out.found);
+    add_friction(parts, coulomb_mps2, out.found);
+    add_spring(parts, out.found);
   }
   return out;
 }
@@ -104,8 +173,8 @@ void Surrogates::begin(const EstimatorConfig& core, const effect::SurrogateConfi
                        const effect::Explanation& e) {
   for (auto& pass : passes_) pass.reset();
   if (!is_physical(declared)) return;
-  effect::SurrogateConfig second = with_memory(declared, e);
-  remembers_ = second.memory.force_mps2 > 0.0;
+  effect::SurrogateConfig second = with_found(declared, e);
+  finds_ = second.memory.force_mps2 > 0.0 || second.found != effect::FoundForce{};
   ++second.seed;
   passes_[0].emplace(core, declared, e.grids);
   passes_[1].emplace(core, second, e.grids);
@@ -118,8 +187,8 @@ void Surrogates::hold_against(effect::Explainer& explainer, double rows, Explain
   const auto conclusion = e.conclusion;
   const effect::Diagnosis& first = passes_[0]->diagnosis();
   const effect::Diagnosis* const second = &passes_[1]->diagnosis();
-  effect::Explainer::Surrogates surrogates{first, remembers_ ? nullptr : second,
-                                           remembers_ ? second : nullptr};
+  effect::Explainer::Surrogates surrogates{first, finds_ ? nullptr : second,
+                                           finds_ ? second : nullptr};
   if (rows > 0.0) surrogates.share = first.store().rows() / rows;
   const bool judged = explainer.apply_floor(surrogates, out.identified.faults.impacts, e);
   if (!judged && steps > 0) explains_nothing(e);

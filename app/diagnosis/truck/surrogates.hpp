@@ -39,10 +39,10 @@ struct RecordNoise {
                                                        const effect::Explanation& e,
                                                        const RecordNoise& noise);
 
-/// The same with friction's memory, where some was found: it has no leap that an error of the
-/// velocity could misplace, so less is left of it.
-[[nodiscard]] effect::SurrogateConfig with_memory(effect::SurrogateConfig out,
-                                                  const effect::Explanation& e);
+/// The same with what was found of the law: it moves otherwise then, and friction with a memory has
+/// no leap that an error of the velocity could misplace.
+[[nodiscard]] effect::SurrogateConfig with_found(effect::SurrogateConfig out,
+                                                 const effect::Explanation& e);
 
 /// What identifies it: the same, told that it is behind the reference low pass already.
 [[nodiscard]] inline EstimatorConfig behind_low_pass(EstimatorConfig core) noexcept {
@@ -72,8 +72,8 @@ class SurrogatePass {
   DiagnosisRun run_;
 };
 
-/// The surrogates that an explanation is held against: one of the declared law; one that has
-/// friction's memory, too, or else one with other noise. Some 16 MB, all of it this object's.
+/// The surrogates that an explanation is held against: one of the declared law; one that has what
+/// was found, too, or else one with other noise. Some 16 MB, all of it this object's.
 class Surrogates {
  public:
   /// What was taken before is forgotten. Of an impossible law there is no surrogate.
@@ -98,7 +98,7 @@ class Surrogates {
 
  private:
   std::array<std::optional<SurrogatePass>, 2> passes_;
-  bool remembers_{false};
+  bool finds_{false};
 };
 
 }  // namespace dampline::app

@@ -67,10 +67,10 @@ void conclude(std::uint64_t impacts, Explanation& e) noexcept {
   }
 }
 
-Model remembering_part(const Explanation& e) noexcept {
+Model law_part(const Explanation& e) noexcept {
   Model out = e.base_model;
   for (std::size_t i = e.base_count; i < e.model.count; ++i) {
-    if (has_memory(e.model.effect[i].effect)) out = out.with(e.model.effect[i]);
+    if (is_of_law(e.model.effect[i].effect)) out = out.with(e.model.effect[i]);
   }
   return out;
 }

@@ -72,8 +72,8 @@ inline constexpr double kIncompleteAbove = 1.5;
 /// `impacts`: blows in the input, which every model leaves a little of.
 void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
 
-/// The base and what was added to it that has memory.
-[[nodiscard]] Model remembering_part(const Explanation& explanation) noexcept;
+/// The base and what was added to its law.
+[[nodiscard]] Model law_part(const Explanation& explanation) noexcept;
 
 /// Takes back all steps: what is left is the base's.
 void drop_steps(Explanation& explanation) noexcept;

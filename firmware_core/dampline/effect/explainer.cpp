@@ -448,12 +448,11 @@ bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
   if (base_floor < 0.0) return false;
   e.base_floor_nmse = base_floor;
   if (!beats_surrogate(surrogates.base, e)) drop_steps(e);
-  const Model remembering = remembering_part(e);
-  const bool remembers = surrogates.remembering != nullptr && remembering.count > e.base_count;
+  const Model law = law_part(e);
+  const bool found = surrogates.found != nullptr && law.count > e.base_count;
   const double target = surrogates.share * e.target;
-  const double floor =
-      remembers ? left_of_surrogate(*surrogates.remembering, remembering, e.weight, target)
-                : mean_of(e.weight, target);
+  const double floor = found ? left_of_surrogate(*surrogates.found, law, e.weight, target)
+                             : mean_of(e.weight, target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
   conclude(impacts, e);

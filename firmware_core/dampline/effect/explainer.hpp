@@ -58,9 +58,8 @@ class Explainer {
   struct Surrogates {
     const Diagnosis& base;
     const Diagnosis* other_noise{nullptr};  ///< the same once more: the floor is the mean of both
-    /// The base law with the memory of friction that was found: the floor is what a model with both
-    /// leaves of it.
-    const Diagnosis* remembering{nullptr};
+    /// The base law with what was found of it: the floor is what a model with both leaves of it.
+    const Diagnosis* found{nullptr};
     double share{1.0};  ///< of the record's rows that the surrogates have
   };
   /// What a complete model leaves, from the surrogate: a record of the base law simulated on the

@@ -37,7 +37,10 @@ bool is_number(const Sample& sample) {
 }  // namespace
 
 Surrogate::Surrogate(const SurrogateConfig& config)
-    : config_{config}, filter_{filter_of(config, kFine)}, noise_{config.seed, kStream} {
+    : config_{config},
+      finds_{config.found != FoundForce{}},
+      filter_{filter_of(config, kFine)},
+      noise_{config.seed, kStream} {
   set_taps();
   if (config.memory.is_play) config_.memory.length_m /= 1.0 - 0.5 * kRamp;
   const double sliding_mps2 =
@@ -84,12 +87,40 @@ double Surrogate::remembered(const Motion& m) const noexcept {
   return std::clamp(share, 0.0, 1.0) * std::tanh(m.velocity_mps / kLawWidthMps);
 }
 
+/// A spring that softens never pushes outwards: beyond what it was seen to do it holds nothing.
+double Surrogate::elastic_mps2(const Motion& m) const noexcept {
+  const FoundForce& f = config_.found;
+  const double y = m.deflection_m;
+  const double bent =
+      (config_.stiffness_per_s2 + (f.square_per_m_s2 + f.cube_per_m2_s2 * y) * y) * y +
+      f.magnitude_per_s2 * std::abs(y) + f.stop_up_per_s2 * std::max(y - f.stop_m, 0.0) -
+      f.stop_down_per_s2 * std::max(-y - f.stop_m, 0.0);
+  return y > 0.0 ? std::max(bent, 0.0) : std::min(bent, 0.0);
+}
+
+/// Nor does a friction that falls drive.
+double Surrogate::friction_mps2(const Motion& m) const noexcept {
+  const FoundForce& f = config_.found;
+  const double y = m.deflection_m;
+  double level = config_.coulomb_mps2 * (1.0 + f.grows_per_m * y + f.widens_per_m * std::abs(y));
+  if (f.falls_mps2 != 0.0)
+    level += f.falls_mps2 * std::exp(-std::abs(m.velocity_mps) / f.falls_over_mps);
+  return std::max(level, 0.0) * std::tanh(m.velocity_mps / kLawWidthMps);
+}
+
 double Surrogate::frame_mps2(const Motion& m) const noexcept {
-  const double friction = config_.coulomb_mps2 * std::tanh(m.velocity_mps / kLawWidthMps);
+  const FoundForce& f = config_.found;
+  const double v = m.velocity_mps;
   const double memory =
       config_.memory.force_mps2 > 0.0 ? config_.memory.force_mps2 * remembered(m) : 0.0;
-  return -config_.stiffness_per_s2 * m.deflection_m - config_.viscous_per_s * m.velocity_mps -
-         friction - memory;
+  if (!finds_)
+    return -config_.stiffness_per_s2 * m.deflection_m - config_.viscous_per_s * v -
+           config_.coulomb_mps2 * std::tanh(v / kLawWidthMps) - memory;
+  const double damping_per_s = config_.viscous_per_s +
+                               (v > 0.0 ? f.viscous_up_per_s : f.viscous_down_per_s) +
+                               f.quadratic_per_m * std::abs(v);
+  return -elastic_mps2(m) - damping_per_s * v - friction_mps2(m) - f.relaxing_per_s2 * m.stretch_m -
+         memory;
 }
 
 /// y'' = 2 z_b'' - (z_1'' + z_2''); zeta' = (v - zeta |v|) / r
@@ -97,13 +128,15 @@ Surrogate::Motion Surrogate::rate(const Motion& m, double input_mps2) const noex
   const bool builds_up = config_.memory.force_mps2 > 0.0 && !config_.memory.is_play;
   const double v = m.velocity_mps;
   return {v, 2.0 * frame_mps2(m) - input_mps2,
-          builds_up ? (v - m.zeta * std::abs(v)) / config_.memory.length_m : 0.0};
+          builds_up ? (v - m.zeta * std::abs(v)) / config_.memory.length_m : 0.0,
+          finds_ ? v - m.stretch_m / config_.found.relaxing_s : 0.0};
 }
 
 void Surrogate::step(double from_mps2, double to_mps2, double step_s) noexcept {
   const auto moved = [this](const Motion& by, double s) {
     return Motion{motion_.deflection_m + s * by.deflection_m,
-                  motion_.velocity_mps + s * by.velocity_mps, motion_.zeta + s * by.zeta};
+                  motion_.velocity_mps + s * by.velocity_mps, motion_.zeta + s * by.zeta,
+                  motion_.stretch_m + s * by.stretch_m};
   };
   const double middle_mps2 = 0.5 * (from_mps2 + to_mps2);
   const Motion a = rate(motion_, from_mps2);
@@ -115,7 +148,8 @@ void Surrogate::step(double from_mps2, double to_mps2, double step_s) noexcept {
   };
   motion_ = moved({mean(a.deflection_m, b.deflection_m, c.deflection_m, d.deflection_m),
                    mean(a.velocity_mps, b.velocity_mps, c.velocity_mps, d.velocity_mps),
-                   mean(a.zeta, b.zeta, c.zeta, d.zeta)},
+                   mean(a.zeta, b.zeta, c.zeta, d.zeta),
+                   mean(a.stretch_m, b.stretch_m, c.stretch_m, d.stretch_m)},
                   step_s);
   const double reach_m = 0.5 * config_.memory.length_m;
   piston_m_ = std::clamp(piston_m_, motion_.deflection_m - reach_m, motion_.deflection_m + reach_m);

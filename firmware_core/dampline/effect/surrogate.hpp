@@ -18,6 +18,26 @@ struct FrictionMemory {
   double length_m{0.0};    ///< of a play: to where half the force is there
 };
 
+/// What else was found of the suspension's force, per unit of mass. Zeros: nothing.
+struct FoundForce {
+  double viscous_up_per_s{0.0};  ///< for v > 0
+  double viscous_down_per_s{0.0};
+  double quadratic_per_m{0.0};  ///< times v |v|
+  double grows_per_m{0.0};      ///< the level of friction, of itself, with y ...
+  double widens_per_m{0.0};     ///< ... with |y|
+  double falls_mps2{0.0};       ///< friction at rest above its level, times exp(-|v| / falls_over)
+  double falls_over_mps{1.0};
+  double square_per_m_s2{0.0};   ///< times y^2
+  double cube_per_m2_s2{0.0};    ///< times y^3
+  double magnitude_per_s2{0.0};  ///< times |y|
+  double stop_up_per_s2{0.0};    ///< beyond y = stop_m
+  double stop_down_per_s2{0.0};  ///< beyond y = -stop_m
+  double stop_m{0.0};
+  double relaxing_per_s2{0.0};  ///< a spring behind a dashpot
+  double relaxing_s{1.0};
+  friend bool operator==(const FoundForce&, const FoundForce&) = default;
+};
+
 /// The law and the sensors, as a record tells them.
 struct SurrogateConfig {
   double sample_rate_hz{300.0};
@@ -25,6 +45,7 @@ struct SurrogateConfig {
   double stiffness_per_s2{0.0};  ///< k / M
   double viscous_per_s{0.0};     ///< c / M
   FrictionMemory memory{};
+  FoundForce found{};
   double input_low_pass_hz{0.0};                 ///< of the record; 0: none
   double low_pass_hz{0.0};                       ///< that it is seen through; 0: none
   std::array<double, kChannels> noise_mps2{};    ///< rms, what the resolution makes included
@@ -33,10 +54,9 @@ struct SurrogateConfig {
   std::uint64_t seed{1987};                      ///< of the noise
 };
 
-/// The record that a law alone would have made: M z_b'' + k y + c v + F sign v = 0, and friction
-/// with memory where there is some, on the measured motion of the wheelsets, seen by the same
-/// sensors. What the estimate leaves of it
-/// is the floor that no effect can take away.
+/// The record that a law alone would have made: M z_b'' + k y + c v + F sign v = 0, friction with
+/// memory and what else was found, on the measured motion of the wheelsets, seen by the same
+/// sensors. What the estimate leaves of it is the floor that no effect can take away.
 class Surrogate {
  public:
   explicit Surrogate(const SurrogateConfig& config);
@@ -48,10 +68,13 @@ class Surrogate {
   struct Motion {
     double deflection_m{0.0};
     double velocity_mps{0.0};
-    double zeta{0.0};  // of Dahl's law
+    double zeta{0.0};       // of Dahl's law
+    double stretch_m{0.0};  // of the relaxing spring
   };
   [[nodiscard]] double frame_mps2(const Motion& m) const noexcept;
   [[nodiscard]] double remembered(const Motion& m) const noexcept;
+  [[nodiscard]] double elastic_mps2(const Motion& m) const noexcept;
+  [[nodiscard]] double friction_mps2(const Motion& m) const noexcept;
   [[nodiscard]] Motion rate(const Motion& m, double input_mps2) const noexcept;
   void step(double from_mps2, double to_mps2, double step_s) noexcept;
   [[nodiscard]] std::array<double, 2> between(int part) const noexcept;
@@ -64,6 +87,7 @@ class Surrogate {
   static constexpr std::size_t kTaps = 2 * static_cast<std::size_t>(kHalf);
 
   SurrogateConfig config_;
+  bool finds_;
   std::array<std::array<double, kTaps>, kFine + 1> taps_{};
   int parts_{1};  // of the law's steepest slope, in each fine step
   ButterworthLowPass<kChannels> filter_;
