@@ -27,11 +27,12 @@ constexpr LawErrors kViscousErrors{0.012, 0.0, 0.05, 0.0};
 constexpr LawErrors kQuadraticErrors{0.005, 0.0, 0.015, 0.0};
 constexpr LawErrors kViscoelasticErrors{0.009, 0.004, 0.07, 0.09};
 constexpr LawErrors kStribeckErrors{0.025, 0.0, 0.35, 0.35};
-constexpr LawErrors kPreslidingErrors{0.002, 0.0, 0.008, 0.006};
+constexpr LawErrors kProgressiveErrors{0.0, 0.0, 0.03, 0.0};
+constexpr LawErrors kPreslidingErrors{0.002, 0.005, 0.008, 0.006};
 constexpr LawErrors kBacklashErrors{0.02, 0.006, 0.025, 0.012};
 constexpr LawErrors kStopErrors{0.002, 0.005, 0.17, 0.045};
-constexpr LawErrors kBentErrors{0.0, 0.007, 0.03, 0.0};
-constexpr LawErrors kKinkedErrors{0.0, 0.02, 0.15, 0.0};
+constexpr LawErrors kBentErrors{0.0, 0.007, 0.05, 0.0};
+constexpr LawErrors kKinkedErrors{0.0, 0.03, 0.15, 0.0};
 constexpr LawErrors kPitchErrors{0.012, 0.01, 0.0, 0.04};
 constexpr LawErrors kFlexibleErrors{0.002, 0.003, 0.012, 0.001};
 constexpr LawErrors kLateErrors{0.0, 0.0, 0.02, 0.0};
@@ -47,6 +48,8 @@ LawErrors errors_of(const Candidate& c) noexcept {
       return kViscoelasticErrors;
     case Effect::kStribeck:
       return kStribeckErrors;
+    case Effect::kProgressiveFriction:
+      return kProgressiveErrors;
     case Effect::kPreslidingHysteresis:
       return kPreslidingErrors;
     case Effect::kBacklash:
@@ -83,6 +86,7 @@ LawErrors errors_beside(const Model& model) noexcept {
 /// that bends over the deflection shows the missing part in friction or spring.
 constexpr double kHeldShare = 0.04;
 constexpr double kMostHeld = 0.3;  // of friction or spring
+constexpr double kOfSpring = 0.2;  // of that share, where friction follows the deflection
 
 /// What friction and spring come out too high by, of themselves; as much may be left of it.
 struct HeldErrors {
@@ -101,8 +105,10 @@ HeldErrors held_errors(const Detail& d, double friction, double stiffness) noexc
   int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < d.model.count; ++i) {
     const Candidate& c = d.model.effect[i];
-    if (c.effect == Effect::kProgressiveFriction && c.form == kAbsoluteForm)
+    if (c.effect == Effect::kProgressiveFriction && c.form == kAbsoluteForm) {
       out.coulomb = lost * y_m * d.fit.theta[term] / friction;
+      out.stiffness = -kOfSpring * lost;
+    }
     if (c.effect == Effect::kCubicStiffness)
       out.stiffness = 3.0 * lost * y_m * y_m * d.fit.theta[term] / stiffness;
     term += static_cast<int>(c.count);
