@@ -34,6 +34,7 @@ struct Described {
   bool with_places{true};  ///< slopes along grids
   double deviation{0.0};   ///< of every coefficient, friction and spring
   double factor{1.0};
+  double deflection_m{0.0};  ///< rms
 
   [[nodiscard]] Explanation operator()() const {
     Explanation out;
@@ -53,6 +54,7 @@ struct Described {
     detail.slow = detail.fit;
     detail.factor = factor;
     detail.mass_kg = 1000.0;
+    detail.deflection_rms_m = deflection_m;
     describe(detail, out);
     return out;
   }
@@ -193,9 +195,37 @@ TEST(LawParameters, DeviateByTheirCoefficientsAndTheFactorOfFewEntries) {
   // Of F / theta, both with the same deviation.
   const double relative = 1e-3 * std::hypot(1.0 / kLevelFriction, 1.0 / 0.08);
   const Explanation e = described();
-  EXPECT_NEAR(e.step[0].parameter[0].estimate.std, 1.5 * 2.5 * relative, 1e-12);
+  EXPECT_NEAR(e.step[0].parameter[0].estimate.std, std::hypot(1.5 * 2.5 * relative, 0.03 * 2.5),
+              1e-12);
   EXPECT_NEAR(e.final_coulomb_n.std, std::hypot(1.5 * 1.0, 0.0025 * 200.0), 1e-9);
   EXPECT_NEAR(e.final_stiffness_npm.std, std::hypot(1.5 * 1.0, 0.003 * 140e3), 1e-6);
+}
+
+// With 0.2 N and 140 N/m for a kilogram and 1 mm rms, 0.04 * 0.2 / 0.14 of the deflection's power
+// is missing.
+TEST(LawParameters, AreRidOfWhatTheDeflectionLacks) {
+  constexpr double kLost = 0.04 * 0.2 / 0.14;
+  const auto held = [](const Candidate& law, double coefficient) {
+    Described described{{law}, {coefficient}};
+    described.deflection_m = 1e-3;
+    return described();
+  };
+  const Explanation grows = held(law_of(Effect::kProgressiveFriction, kAbsoluteForm), 80.0);
+  const double of_friction = kLost * 80.0 * 1e-3 / 0.2;
+  EXPECT_NEAR(grows.final_coulomb_n.value, 200.0 * (1.0 - of_friction), 1e-9);
+  EXPECT_NEAR(grows.final_coulomb_n.std, 200.0 * std::hypot(0.0025, of_friction), 1e-9);
+  EXPECT_NEAR(grows.final_stiffness_npm.value, 140e3 * (1.0 + 0.2 * kLost), 1e-6);
+  EXPECT_NEAR(grows.final_stiffness_npm.std, 140e3 * std::hypot(0.003, 0.2 * kLost), 1e-6);
+  const Explanation hardens = held(law_of(Effect::kCubicStiffness), 4e6);
+  const double of_spring = 3.0 * kLost * 1e-6 * 4e6 / 140.0;
+  EXPECT_NEAR(hardens.final_coulomb_n.value, 200.0, 1e-9);
+  EXPECT_NEAR(hardens.final_stiffness_npm.value, 140e3 * (1.0 - of_spring), 1e-6);
+  EXPECT_NEAR(hardens.final_stiffness_npm.std, 140e3 * std::hypot(0.003, 0.007, of_spring), 1e-6);
+  // No more than 0.3; a level that grows with y itself has its mean.
+  const Explanation most = held(law_of(Effect::kProgressiveFriction, kAbsoluteForm), 8e3);
+  EXPECT_NEAR(most.final_coulomb_n.value, 140.0, 1e-9);
+  const Explanation other = held(law_of(Effect::kProgressiveFriction), 80.0);
+  EXPECT_NEAR(other.final_coulomb_n.value, 200.0, 1e-9);
 }
 
 TEST(LawParameters, NameTheOneTheyAreMostCorrelatedWith) {
@@ -233,12 +263,13 @@ TEST(LawParameters, StayInDoubtByWhatTheirLawsDoNotShow) {
                          Doubt{Effect::kQuadraticDamping, 0, 0.005, 0.0, 0.015, 0.0},
                          Doubt{Effect::kViscoelastic, 0, 0.009, 0.004, 0.07, 0.09},
                          Doubt{Effect::kStribeck, 0, 0.025, 0.0, 0.35, 0.35},
-                         Doubt{Effect::kPreslidingHysteresis, 0, 0.002, 0.0, 0.008, 0.006},
+                         Doubt{Effect::kProgressiveFriction, 0, 0.0, 0.0, 0.03, 0.0},
+                         Doubt{Effect::kPreslidingHysteresis, 0, 0.002, 0.005, 0.008, 0.006},
                          Doubt{Effect::kBacklash, 0, 0.02, 0.006, 0.025, 0.012},
                          Doubt{Effect::kBumpStop, 0, 0.002, 0.005, 0.17, 0.045},
-                         Doubt{Effect::kCubicStiffness, 0, 0.0, 0.007, 0.03, 0.0},
-                         Doubt{Effect::kQuadraticStiffness, 0, 0.0, 0.007, 0.03, 0.0},
-                         Doubt{Effect::kAsymmetricStiffness, 0, 0.0, 0.02, 0.15, 0.0},
+                         Doubt{Effect::kCubicStiffness, 0, 0.0, 0.007, 0.05, 0.0},
+                         Doubt{Effect::kQuadraticStiffness, 0, 0.0, 0.007, 0.05, 0.0},
+                         Doubt{Effect::kAsymmetricStiffness, 0, 0.0, 0.03, 0.15, 0.0},
                          Doubt{Effect::kTimeSkew, 1, 0.0, 0.0, 0.02, 0.0},
                          Doubt{Effect::kGainError, 1, 0.0, 0.0, 0.0, 0.0}}) {
     const Explanation e = Described{{law_of(d.effect, d.form, 1)}, {0.08, 0.01}}();
