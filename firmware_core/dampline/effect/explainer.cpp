@@ -87,9 +87,8 @@ void Explainer::try_all(const Model& model, const ModelFit& now, BestOfEffects& 
     if (!has_room(model, candidate, two_late_)) continue;
     if (!allowed_[static_cast<std::size_t>(candidate.effect)]) continue;
     if (is_kink_of_spring(model, candidate, grids_)) continue;
-    const Model with = model.with(candidate);
-    const ModelFit fit = fitter_.fit(with);
-    if (!fit.ok || !is_plausible(candidate, fit, now.terms) || !is_plausible(with, fit)) continue;
+    const ModelFit fit = fitter_.fit(model.with(candidate));
+    if (!fit.ok || !is_plausible(candidate, fit, now.terms) || !is_plausible(model, fit)) continue;
     const bool tiny = fit.held_out_nmse > (1.0 - kSkewGain) * now.held_out_nmse;
     if (candidate.effect == Effect::kTimeSkew && tiny) continue;
     Best& b = best[static_cast<std::size_t>(candidate.effect)];
