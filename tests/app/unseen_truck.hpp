@@ -92,20 +92,44 @@ inline Signal frame(UnseenTruck& t, const Signal& first, const Signal& second, c
   return out;
 }
 
-/// What the truck's effect does, of a size that its motion without it gives; `t` learns the truths.
-inline Law law_of(UnseenTruck& t) {
+/// Damping of a size that the motion without it gives; `t` learns the truths.
+inline void add_damping(UnseenTruck& t, Law& law) {
   const std::string_view effect = t.truck.name;
-  const double level_n = t.truck.coulomb_n;
-  const double k = t.truck.spring_npm;
-  const double y_m = t.deflection_m;
-  const double v_mps = t.velocity_mps;
-  Law law;
-  law.level = [=](const Motion&) { return level_n; };
-  const auto viscous = (0.3 + 0.7 * t.size) * level_n / v_mps;
+  const double viscous = (0.3 + 0.7 * t.size) * t.truck.coulomb_n / t.velocity_mps;
   if (effect == "viscous") {
     law.force = [=](const Motion& m) { return viscous * m.velocity_mps; };
     t.truths.emplace_back("viscous", viscous);
-  } else if (effect == "asymmetric_coulomb") {  // a constant force: nothing that is seen
+  } else if (effect == "quadratic_damping") {
+    const double damping = viscous / t.velocity_mps;
+    law.force = [=](const Motion& m) {
+      return damping * m.velocity_mps * std::abs(m.velocity_mps);
+    };
+    t.truths.emplace_back("quadratic_damping", damping);
+  } else if (effect == "viscoelastic") {
+    const double spring_npm = (0.2 + 0.5 * t.size) * t.truck.spring_npm;
+    const double time_s = 0.012 + 0.03 * t.other;
+    law.force = [=, stretch_m = 0.0](const Motion& m) mutable {
+      stretch_m += kStepS * (m.velocity_mps - stretch_m / time_s);
+      return spring_npm * stretch_m;
+    };
+    t.truths.emplace_back("viscoelastic_stiffness", spring_npm);
+    t.truths.emplace_back("viscoelastic_time", time_s);
+  } else if (effect == "asymmetric_viscous") {
+    const double difference = 0.2 + 0.3 * t.other;
+    law.force = [=](const Motion& m) {
+      return viscous * (1.0 + difference * sign(m.velocity_mps)) * m.velocity_mps;
+    };
+    t.truths.emplace_back("viscous_positive", viscous * (1.0 + difference));
+    t.truths.emplace_back("viscous_negative", viscous * (1.0 - difference));
+  }
+}
+
+/// Friction of another kind, likewise.
+inline void change_friction(UnseenTruck& t, Law& law) {
+  const std::string_view effect = t.truck.name;
+  const double level_n = t.truck.coulomb_n;
+  const double y_m = t.deflection_m;
+  if (effect == "asymmetric_coulomb") {  // a constant force: nothing that is seen
     const double share = 0.12 + 0.28 * t.size;
     law.level = [=](const Motion& m) { return level_n * (1.0 + share * sign(m.velocity_mps)); };
   } else if (effect == "stribeck") {
@@ -133,7 +157,21 @@ inline Law law_of(UnseenTruck& t) {
       if (std::abs(pin_m) < 0.5 * gap_m) stretch_m = 0.0;
       return level_n * stretch_m / kStretchM;
     };
-  } else if (effect == "bump_stop") {
+  } else if (effect == "progressive_friction") {
+    const double length_m = y_m / (0.2 + 0.4 * t.size);
+    law.level = [=](const Motion& m) {
+      return level_n * (1.0 + std::abs(m.deflection_m) / length_m);
+    };
+    t.truths.emplace_back("progressive_friction_length", length_m);
+  }
+}
+
+/// A spring that bends, likewise.
+inline void bend_spring(UnseenTruck& t, Law& law) {
+  const std::string_view effect = t.truck.name;
+  const double k = t.truck.spring_npm;
+  const double y_m = t.deflection_m;
+  if (effect == "bump_stop") {
     const double gap_m = (1.5 + 0.7 * t.size) * y_m;
     const double stop_npm = (1.0 + 3.0 * t.other) * k;
     law.force = [=](const Motion& m) {
@@ -149,35 +187,22 @@ inline Law law_of(UnseenTruck& t) {
     const double difference = (0.1 + 0.2 * t.size) * k;
     law.force = [=](const Motion& m) { return difference * std::abs(m.deflection_m); };
     t.truths.emplace_back("asymmetric_stiffness_difference", 2.0 * difference);
-  } else if (effect == "progressive_friction") {
-    const double length_m = y_m / (0.2 + 0.4 * t.size);
-    law.level = [=](const Motion& m) {
-      return level_n * (1.0 + std::abs(m.deflection_m) / length_m);
-    };
-    t.truths.emplace_back("progressive_friction_length", length_m);
-  } else if (effect == "quadratic_damping") {
-    const double damping = viscous / v_mps;
-    law.force = [=](const Motion& m) {
-      return damping * m.velocity_mps * std::abs(m.velocity_mps);
-    };
-    t.truths.emplace_back("quadratic_damping", damping);
-  } else if (effect == "viscoelastic") {
-    const double spring_npm = (0.2 + 0.5 * t.size) * k;
-    const double time_s = 0.012 + 0.03 * t.other;
-    law.force = [=, stretch_m = 0.0](const Motion& m) mutable {
-      stretch_m += kStepS * (m.velocity_mps - stretch_m / time_s);
-      return spring_npm * stretch_m;
-    };
-    t.truths.emplace_back("viscoelastic_stiffness", spring_npm);
-    t.truths.emplace_back("viscoelastic_time", time_s);
-  } else if (effect == "asymmetric_viscous") {
-    const double difference = 0.2 + 0.3 * t.other;
-    law.force = [=](const Motion& m) {
-      return viscous * (1.0 + difference * sign(m.velocity_mps)) * m.velocity_mps;
-    };
-    t.truths.emplace_back("viscous_positive", viscous * (1.0 + difference));
-    t.truths.emplace_back("viscous_negative", viscous * (1.0 - difference));
   }
+}
+
+/// Dry friction of one level, and nothing else.
+inline Law plain_law(const UnseenTruck& t) {
+  Law law;
+  law.level = [level_n = t.truck.coulomb_n](const Motion&) { return level_n; };
+  return law;
+}
+
+/// With the truck's effect.
+inline Law law_of(UnseenTruck& t) {
+  Law law = plain_law(t);
+  add_damping(t, law);
+  change_friction(t, law);
+  bend_spring(t, law);
   return law;
 }
 
@@ -224,9 +249,7 @@ inline std::string unseen_record(UnseenTruck& t, std::uint64_t seed) {
   const auto start = [&](const Signal& s) {
     return Signal(s.begin(), s.begin() + static_cast<std::ptrdiff_t>(count / 4));
   };
-  Law plain_law;
-  plain_law.level = [&](const Motion&) { return t.truck.coulomb_n; };
-  frame(t, start(seen[1]), start(seen[2]), plain_law);
+  frame(t, start(seen[1]), start(seen[2]), plain_law(t));
   seen[0] = frame(t, seen[1], seen[2], law_of(t));
   for (Signal& each : seen) plain::low_pass(100.0, each);
   std::normal_distribution<double> normal;

@@ -83,57 +83,51 @@ struct Parts {
   [[nodiscard]] double force(std::size_t i) const { return plain(i) / mass_kg; }
 };
 
-void add_memory(const Parts& p, effect::SurrogateConfig& out) {
-  if (out.memory.force_mps2 > 0.0) return;
-  out.memory = {p.step.chosen.effect == effect::Effect::kBacklash, p.force(0), p.plain(1)};
-  out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
-}
-
-void add_damping(const Parts& p, effect::FoundForce& out) {
-  switch (p.step.chosen.effect) {
-    case effect::Effect::kViscous:
-    case effect::Effect::kAsymmetricViscous:
-      out.viscous_up_per_s = p.force(0);
-      out.viscous_down_per_s = p.force(p.step.parameter_count - 1);
+/// `coulomb_mps2`: of all friction, with memory or without.
+void add(const Parts& p, double coulomb_mps2, effect::SurrogateConfig& out) {
+  using effect::Effect;
+  effect::FoundForce& found = out.found;
+  const Effect kind = p.step.chosen.effect;
+  const auto form = p.step.chosen.form;
+  switch (kind) {
+    case Effect::kPreslidingHysteresis:
+    case Effect::kBacklash:
+      if (out.memory.force_mps2 > 0.0) return;
+      out.memory = {kind == Effect::kBacklash, p.force(0), p.plain(1)};
+      out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
       return;
-    case effect::Effect::kQuadraticDamping:
-      out.quadratic_per_m = p.force(0);
+    case Effect::kViscous:
+    case Effect::kAsymmetricViscous:
+      found.viscous_up_per_s = p.force(0);
+      found.viscous_down_per_s = p.force(p.step.parameter_count - 1);
       return;
-    case effect::Effect::kViscoelastic:
-      out.relaxing_per_s2 = p.force(0);
-      out.relaxing_s = p.plain(1);
+    case Effect::kQuadraticDamping:
+      found.quadratic_per_m = p.force(0);
       return;
-    default:
+    case Effect::kViscoelastic:
+      found.relaxing_per_s2 = p.force(0);
+      found.relaxing_s = p.plain(1);
       return;
-  }
-}
-
-void add_friction(const Parts& p, double coulomb_mps2, effect::FoundForce& out) {
-  if (p.step.chosen.effect == effect::Effect::kProgressiveFriction) {
-    const bool absolute = p.step.chosen.form == effect::kAbsoluteForm;
-    (absolute ? out.widens_per_m : out.grows_per_m) = 1.0 / p.plain(0);
-  }
-  if (p.step.chosen.effect == effect::Effect::kStribeck) {
-    out.falls_mps2 = p.plain(0) * coulomb_mps2;
-    out.falls_over_mps = p.plain(1);
-  }
-}
-
-void add_spring(const Parts& p, effect::FoundForce& out) {
-  switch (p.step.chosen.effect) {
-    case effect::Effect::kCubicStiffness:
-      out.cube_per_m2_s2 = p.force(0);
+    case Effect::kProgressiveFriction:
+      (form == effect::kAbsoluteForm ? found.widens_per_m : found.grows_per_m) = 1.0 / p.plain(0);
       return;
-    case effect::Effect::kQuadraticStiffness:
-      out.square_per_m_s2 = p.force(0);
+    case Effect::kStribeck:
+      found.falls_mps2 = p.plain(0) * coulomb_mps2;
+      found.falls_over_mps = p.plain(1);
       return;
-    case effect::Effect::kAsymmetricStiffness:
-      out.magnitude_per_s2 = 0.5 * p.force(0);
+    case Effect::kCubicStiffness:
+      found.cube_per_m2_s2 = p.force(0);
       return;
-    case effect::Effect::kBumpStop:
-      if (p.step.chosen.form != effect::kOneSidedDown) out.stop_up_per_s2 = p.force(0);
-      if (p.step.chosen.form != effect::kOneSidedUp) out.stop_down_per_s2 = p.force(0);
-      out.stop_m = p.plain(1);
+    case Effect::kQuadraticStiffness:
+      found.square_per_m_s2 = p.force(0);
+      return;
+    case Effect::kAsymmetricStiffness:
+      found.magnitude_per_s2 = 0.5 * p.force(0);
+      return;
+    case Effect::kBumpStop:
+      if (form != effect::kOneSidedDown) found.stop_up_per_s2 = p.force(0);
+      if (form != effect::kOneSidedUp) found.stop_down_per_s2 = p.force(0);
+      found.stop_m = p.plain(1);
       return;
     default:
       return;
@@ -145,13 +139,7 @@ void add_spring(const Parts& p, effect::FoundForce& out) {
 effect::SurrogateConfig with_found(effect::SurrogateConfig out, const effect::Explanation& e) {
   const double coulomb_mps2 = out.coulomb_mps2;
   const double mass_kg = e.final_coulomb_n.value / coulomb_mps2;
-  for (std::size_t i = 0; i < e.step_count; ++i) {
-    const Parts parts{e.step[i], mass_kg};
-    if (effect::has_memory(e.step[i].chosen.effect)) add_memory(parts, out);
-    add_damping(parts, out.found);
-    add_friction(parts, coulomb_mps2, out.found);
-    add_spring(parts, out.found);
-  }
+  for (std::size_t i = 0; i < e.step_count; ++i) add({e.step[i], mass_kg}, coulomb_mps2, out);
   return out;
 }
 

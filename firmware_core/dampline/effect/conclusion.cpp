@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "dampline/effect/rules.hpp"
+
 namespace dampline::effect {
 namespace {
 
@@ -14,11 +16,9 @@ constexpr double kDrivesZ = 2.0;
 
 /// Damping that surely gives energy.
 bool drives(const Step& step) noexcept {
-  const Effect effect = step.chosen.effect;
-  const bool damps = effect == Effect::kViscous || effect == Effect::kAsymmetricViscous ||
-                     effect == Effect::kQuadraticDamping || effect == Effect::kViscoelastic;
   const auto end = step.parameter.begin() + static_cast<std::ptrdiff_t>(step.parameter_count);
-  return damps && std::any_of(step.parameter.begin(), end, [](const auto& parameter) {
+  return is_damping(step.chosen.effect) &&
+         std::any_of(step.parameter.begin(), end, [](const auto& parameter) {
            return parameter.estimate.value < -kDrivesZ * parameter.estimate.std;
          });
 }

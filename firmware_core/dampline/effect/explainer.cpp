@@ -177,8 +177,7 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
       if (is_kink_of_spring(out.model, candidates_.item[c], grids_)) continue;
       place = candidates_.item[c];
       const ModelFit fit = fitter_.fit(out.model);
-      if (!fit.ok || !is_plausible(place, fit, term)) continue;
-      if (!is_plausible(out.model, fit)) continue;
+      if (!fit.ok || !is_plausible(place, fit, term) || !is_plausible(out.model, fit)) continue;
       const double judged = handicap(place) * fit.held_out_nmse;
       if (judged < kReadjusted * best.judged) best = {true, place, fit.held_out_nmse, judged};
     }

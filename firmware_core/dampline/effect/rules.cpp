@@ -48,19 +48,6 @@ bool is_even_spring(Effect effect) noexcept {
 bool is_bent_spring(Effect effect) noexcept {
   return effect == Effect::kBumpStop || effect == Effect::kCubicStiffness;
 }
-bool is_of_rate(Effect effect) noexcept {
-  return effect == Effect::kViscous || effect == Effect::kAsymmetricViscous ||
-         effect == Effect::kQuadraticDamping || effect == Effect::kViscoelastic ||
-         effect == Effect::kStribeck;
-}
-
-/// What takes up a gap yields: its force comes later than the library's, like a late frame's, and
-/// over some time.
-double gain_beside_backlash(const Candidate& candidate) noexcept {
-  if (candidate.effect == Effect::kTimeSkew)
-    return candidate.form == kFrameForm ? kFrameBesideBacklashGain : kSkewBesideMemoryGain;
-  return is_of_rate(candidate.effect) ? kRateBesideBacklashGain : 0.0;
-}
 
 /// The gain that a later effect needs beside one that is in the model. What a late channel leaves,
 /// in second order, looks like a mode or like friction that builds up, and its friction, which
@@ -83,9 +70,13 @@ double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept
   if (has_memory(effect)) return kLaterMemoryGain;
   if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
   if (!has_memory(known)) return kLaterGain;
-  if (known == Effect::kBacklash && gain_beside_backlash(candidate) > 0.0)
-    return gain_beside_backlash(candidate);
-  if (effect == Effect::kTimeSkew) return kSkewBesideMemoryGain;
+  // What takes up a gap yields: its force comes later than the library's, like a late frame's, and
+  // over some time.
+  const bool yields = known == Effect::kBacklash;
+  if (yields && (is_damping(effect) || effect == Effect::kStribeck)) return kRateBesideBacklashGain;
+  if (effect == Effect::kTimeSkew)
+    return yields && candidate.form == kFrameForm ? kFrameBesideBacklashGain
+                                                  : kSkewBesideMemoryGain;
   const bool directed =
       effect == Effect::kProgressiveFriction || effect == Effect::kAsymmetricViscous;
   return directed ? kLaterMemoryGain : kLaterSensorGain;

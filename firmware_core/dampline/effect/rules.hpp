@@ -14,6 +14,11 @@ namespace dampline::effect {
 /// Whether a model may take a candidate: each effect once, but two channels may be late beside the
 /// third where `two_late`.
 [[nodiscard]] bool has_room(const Model& model, const Candidate& candidate, bool two_late) noexcept;
+/// A force that takes energy by the speed, at once or over some time.
+[[nodiscard]] constexpr bool is_damping(Effect effect) noexcept {
+  return effect == Effect::kViscous || effect == Effect::kAsymmetricViscous ||
+         effect == Effect::kQuadraticDamping || effect == Effect::kViscoelastic;
+}
 /// Signs that physics asks for: of the effect's first coefficient, the `term`-th of the fit, and
 /// friction that does not drive.
 [[nodiscard]] bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noexcept;
