@@ -66,9 +66,12 @@ std::string warning_section(const RunResult& result) {
   for (const std::string& warning : result.warnings)
     out += fmt::format("<p class=\"warning\">{}</p>\n", escape_html(warning));
   if (result.std_is_lower_bound)
-    out +=
-        "<p class=\"warning\">The stated standard deviations are lower bounds: this record lies "
-        "outside the range (sensor noise, sticking) in which they were validated.</p>\n";
+    out += fmt::format(
+        "<p class=\"warning\">The stated standard deviations are lower bounds: {}.</p>\n",
+        result.trust == Trust::kTrusted
+            ? "this record lies outside the range (sensor noise, sticking) in which they were "
+              "validated"
+            : "they are of the noise alone, and the result is not to be trusted");
   return out;
 }
 

@@ -253,6 +253,7 @@ void judge_trust(const Explaining* explaining, RunResult& result) {
   if (!reasons.empty() && reasons.front().first > Trust::kModelIncomplete)
     std::erase_if(reasons, [](const auto& r) { return r.first == Trust::kModelIncomplete; });
   for (auto& [trust, reason] : reasons) result.trust_reasons.push_back(std::move(reason));
+  result.std_is_lower_bound = result.std_is_unproven || !reasons.empty();
   if (reasons.empty()) return;
   result.trust = reasons.front().first;
   result.headline = kLeads[static_cast<std::size_t>(result.trust)] + result.trust_reasons.front();

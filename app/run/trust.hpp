@@ -26,8 +26,8 @@ inline constexpr double kLeastShakingMps2 = 0.7;
 inline constexpr double kRigMisfit = 0.09;
 
 /// The one rule, for trucks and rigs, files and live runs: sets trust and its reasons, the gravest
-/// first, and the headline, which states numbers only where they are trusted. Without an
-/// explanation (null) the fit alone is judged.
+/// first, whether deviations are lower bounds, and the headline, which states numbers only where
+/// they are trusted. Without an explanation (null) the fit alone is judged.
 void judge_trust(const Explaining* explaining, RunResult& result);
 
 }  // namespace dampline::app

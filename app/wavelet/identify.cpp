@@ -207,7 +207,7 @@ void compare_wavelets(const Measured& measured, Question question, const Wavelet
                              100.0 * apart / std::abs(a.value));
   }
   if (differing.empty()) return;
-  result.std_is_lower_bound = true;
+  result.std_is_unproven = true;
   result.warnings.push_back(
       fmt::format("{} and {} differ beyond their deviations: {}. The step is too coarse for this "
                   "motion, or the "

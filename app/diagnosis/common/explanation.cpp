@@ -281,7 +281,7 @@ void put_final(Explanation& e, RunResult& result) {
   chain_errors(e);
   if (adds(e)) {
     result.base = BaseLaw{e.base.terms, e.base.parameters, result.fit};
-    result.std_is_lower_bound = false;  // which was said of the base's
+    result.std_is_unproven = false;  // which was said of the base's
     result.fit.law_width_share.reset();
     result.fit.viscous.reset();
   }
