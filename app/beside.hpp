@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <future>
 #include <system_error>
-#include <utility>
+#include <thread>
+#include <vector>
 
 namespace dampline::app {
 
@@ -15,6 +19,21 @@ template <class Function, class... Arguments>
   } catch (const std::system_error&) {
     return std::async(std::launch::deferred, function, arguments...);
   }
+}
+
+/// Calls function(0) to function(count - 1), as many at a time as there are processors, each in any
+/// order; what they throw comes out when all have ended.
+template <class Function>
+void each_beside(std::size_t count, const Function& function) {
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) function(i);
+  };
+  std::vector<std::future<void>> others(
+      std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency())) - 1);
+  for (std::future<void>& other : others) other = beside(work);
+  work();
+  for (std::future<void>& other : others) other.get();
 }
 
 }  // namespace dampline::app

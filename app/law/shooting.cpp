@@ -5,11 +5,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "app/beside.hpp"
 #include "app/law/block_fit.hpp"
 #include "app/law/left_over.hpp"
 
@@ -79,6 +81,10 @@ class Shooting {
   [[nodiscard]] bool run(const FreeRun& law, const Segment& s, State& state, VectorXd& out) const;
   [[nodiscard]] double squares_of(const VectorXd& unknowns, std::vector<Segment>& segments,
                                   const std::vector<Segment>& others = {}) const;
+  [[nodiscard]] double state_step(const Segment& s, const std::vector<Regressor>& memories,
+                                  Index k) const;
+  [[nodiscard]] bool follow_segments(const Law& law, int refinement, std::size_t memories,
+                                     Index unknowns, std::vector<Linear>& out);
   [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
                                std::vector<Linear>& out);
   [[nodiscard]] Sums sum(const std::vector<Linear>& parts) const;
@@ -195,6 +201,38 @@ State moved_state(State s, Index k, double by) {
   return s;
 }
 
+/// By which the k-th figure of a segment's first state is moved.
+double Shooting::state_step(const Segment& s, const std::vector<Regressor>& memories,
+                            Index k) const {
+  if (k == 0) return kDifferences[0] * range_m_;
+  if (k == 1) return kDifferences[0] * range_m_ * 2.0 * std::numbers::pi / period_s_;
+  const auto m = static_cast<std::size_t>(k - 2);
+  const double size = memories[m].kind == Kind::kMaxwell ? range_m_ : memories[m].a;
+  return s.start.memory_m[m] > 0.0 ? -kDifferences[0] * size : kDifferences[0] * size;
+}
+
+/// What is left of each segment, with room for its slopes; hands on what the terms remember.
+bool Shooting::follow_segments(const Law& law, int refinement, std::size_t memories, Index unknowns,
+                               std::vector<Linear>& out) {
+  out.clear();
+  State end;
+  VectorXd path;
+  for (Segment& s : segments_) {
+    const Drive& d = drives_[s.drive];
+    if (!s.is_first) {
+      s.start.memory_m = end.memory_m;
+      s.start.slip_m = end.slip_m;
+    }
+    end = s.start;
+    if (!run(FreeRun{law, d.input, refinement}, s, end, path)) return false;
+    const Index figures = 2 + (s.is_first ? static_cast<Index>(memories) : 0);
+    out.push_back({left_of(d, s.begin, path), MatrixXd{path.size(), unknowns},
+                   MatrixXd{path.size(), figures}});
+  }
+  return true;
+}
+
+/// The slopes are taken beside one another: a run of the law each, which is what all this costs.
 bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
                          std::vector<Linear>& out) {
   const Index p = with_unknowns ? unknowns.size() : 0;
@@ -206,45 +244,34 @@ bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unk
     there[j] += difference_ * scale_[j];
     beside.push_back(law_of_(there));
   }
-  out.clear();
-  State end;
-  VectorXd path;
-  VectorXd other;
-  for (Segment& s : segments_) {
+  if (!follow_segments(law, refinement, memories.size(), p, out)) return false;
+  struct Slope {
+    std::size_t segment;
+    Index column;  ///< of the unknowns, then of the state
+  };
+  std::vector<Slope> slopes;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (Index k = 0; k < p + out[i].by_state.cols(); ++k) slopes.push_back({i, k});
+  std::atomic<bool> stayed{true};
+  each_beside(slopes.size(), [&](std::size_t n) {
+    if (!stayed) return;
+    const Segment& s = segments_[slopes[n].segment];
     const Drive& d = drives_[s.drive];
-    const FreeRun base{law, d.input, refinement};
-    if (!s.is_first) {
-      s.start.memory_m = end.memory_m;
-      s.start.slip_m = end.slip_m;
+    Linear& l = out[slopes[n].segment];
+    const Index j = slopes[n].column;
+    const bool of_law = j < p;
+    const double step = of_law ? difference_ * scale_[j] : state_step(s, memories, j - p);
+    State from = of_law ? s.start : moved_state(s.start, j - p, step);
+    VectorXd path;
+    if (!run(FreeRun{of_law ? beside[static_cast<std::size_t>(j)] : law, d.input, refinement}, s,
+             from, path)) {
+      stayed = false;
+      return;
     }
-    end = s.start;
-    if (!run(base, s, end, path)) return false;
-    Linear& l = out.emplace_back();
-    l.left = left_of(d, s.begin, path);
-    const auto slope = [&](const FreeRun& law_there, State from, double step, auto column) {
-      if (!run(law_there, s, from, other)) return false;
-      column = (left_of(d, s.begin, other) - l.left) / step;
-      return true;
-    };
-    l.by_unknowns.resize(path.size(), p);
-    for (Index j = 0; j < p; ++j)
-      if (!slope(FreeRun{beside[static_cast<std::size_t>(j)], d.input, refinement}, s.start,
-                 difference_ * scale_[j], l.by_unknowns.col(j)))
-        return false;
-    const Index figures = 2 + (s.is_first ? static_cast<Index>(memories.size()) : 0);
-    l.by_state.resize(path.size(), figures);
-    for (Index k = 0; k < figures; ++k) {
-      double step = kDifferences[0] * range_m_;
-      if (k == 1) step *= 2.0 * std::numbers::pi / period_s_;
-      if (k >= 2) {
-        const auto m = static_cast<std::size_t>(k - 2);
-        step = kDifferences[0] * (memories[m].kind == Kind::kMaxwell ? range_m_ : memories[m].a);
-        if (s.start.memory_m[m] > 0.0) step = -step;
-      }
-      if (!slope(base, moved_state(s.start, k, step), step, l.by_state.col(k))) return false;
-    }
-  }
-  return true;
+    auto column = of_law ? l.by_unknowns.col(j) : l.by_state.col(j - p);
+    column = (left_of(d, s.begin, path) - l.left) / step;
+  });
+  return stayed;
 }
 
 /// What is left when each segment's state has taken its part.

@@ -39,6 +39,7 @@ BankFigures read_bank(const std::vector<Regressor>& columns, const Eigen::Vector
   out.level_up_n = force[kPoints];
   out.level_down_n = force[0];
   const double step_m = 2.0 * longest_m / kPoints;
+  out.step_m = step_m;
   const double free_n = kFree * 0.5 * (std::abs(out.level_up_n) + std::abs(out.level_down_n));
   double between_m = 0.0;
   double soft_m = 0.0;

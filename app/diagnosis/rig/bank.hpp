@@ -12,6 +12,7 @@ struct BankFigures {
   double level_up_n{0.0};
   double level_down_n{0.0};
   double free_play_m{0.0};
+  double step_m{0.0};  ///< to which lengths are read
   double stiffness_npm{0.0};
   double play_share{0.0};  ///< soft travel over that between nine tenths of either level
 };

@@ -287,6 +287,8 @@ void write_bank(Writing& w, Step& step) {
   add(effect + "_force_negative", &BankFigures::level_down_n, "N");
   add(effect == "backlash" ? "backlash_gap" : effect + "_free_play", &BankFigures::free_play_m,
       "m");
+  step.parameters.back().std =
+      std::hypot(step.parameters.back().std, all.step_m / std::sqrt(6.0));  // both ends rounded
   add(effect + "_contact_stiffness", &BankFigures::stiffness_npm, "N/m");
   int number = 0;
   for (const BankElement& e : w.s.bank)
