@@ -40,7 +40,7 @@ class Sensors {
   [[nodiscard]] CanFrame frame(std::size_t channel) const noexcept;
 
  private:
-  void send_instant();
+  void make_instant(std::vector<CanFrame>& frames);
   RawSender& bus_;
   std::int64_t instant_{0};
   std::chrono::steady_clock::time_point due_{};

@@ -72,7 +72,7 @@ class LiveRun {
   const GpioSim gpio;
 };
 
-TEST(Service, LampAndMarkersFollowTheRun) {
+TEST(TimeTravelService, LampAndMarkersFollowTheRun) {
   const LiveRun live;
   Child program{live.command(), live.folder.path()};
   std::this_thread::sleep_for(seconds{2});
@@ -138,7 +138,7 @@ std::vector<std::string> under_manager(const LiveRun& live, const std::string& s
   return all;
 }
 
-TEST(Service, TellsItsManager) {
+TEST(TimeTravelService, TellsItsManager) {
   const LiveRun live;
   const std::string socket = live.folder / "manager";
   Manager manager{socket};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One file of a black box, record by record.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <optional>
@@ -83,9 +85,30 @@ TEST(BlackboxFileReader, TakesNothingFromTheFileBefore) {
     ASSERT_TRUE(reader.torn()) << cut;
     ASSERT_EQ(reader.damaged_stretches(), 0U) << cut;
   }
+  std::filesystem::resize_file(folder.file(1), size - kRecordHead - kRecordTail - 1);
+  ASSERT_EQ(reader.open(folder.file(1).c_str()), Opened::kOpen);
+  EXPECT_FALSE(reader.torn()) << "nothing of it is read yet";
   test::write_bytes(folder.file(1), test::bytes_of(folder.file(1)).substr(0, kHeaderBytes - 1));
   EXPECT_EQ(reader.open(folder.file(1).c_str()), Opened::kCutOff);
   EXPECT_FALSE(next_number(reader));
+}
+
+TEST(BlackboxFileReader, ClosesAFileThatGotTheNumberOfTheStandardInput) {
+  const BoxFolder folder;
+  test::write_box(test::box_config(folder.path()), 0, 20);
+  const int kept = ::fcntl(0, F_DUPFD_CLOEXEC, 3);
+  ASSERT_GE(kept, 0);
+  ::close(0);
+  BlackboxFileReader reader;
+  const Opened opened = reader.open(folder.file(1).c_str());
+  const bool was_open = ::fcntl(0, F_GETFD) >= 0;
+  reader.close();
+  const bool is_open = ::fcntl(0, F_GETFD) >= 0;
+  ::dup2(kept, 0);
+  ::close(kept);
+  EXPECT_EQ(opened, Opened::kOpen);
+  EXPECT_TRUE(was_open);
+  EXPECT_FALSE(is_open);
 }
 
 TEST(BlackboxFileReader, CountsDamagedStretchesOfOneFile) {

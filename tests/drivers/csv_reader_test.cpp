@@ -304,6 +304,8 @@ TEST(CsvReader, PassesOverUnitsThatAreShortOrInBrackets) {
   const std::string rows = "0;1;5\n1;2;6\n";
   EXPECT_EQ(read_all(rig(), head + "[seconds];(millimetres);N\n" + rows).rows.size(), 2U);
   EXPECT_EQ(read_all(rig(), head + "s;m/s^2;N\n" + rows).rows.size(), 2U);
+  EXPECT_EQ(read_all(rig(), "time_s;deflection_m;force_n\nm;N\n" + rows).rows.size(), 0U)
+      << "not one for each column";
   EXPECT_THAT(read_all(rig(), head + "seconds;metres;N\n" + rows).error,
               HasSubstr("expected it among: seconds, metres, N"))
       << "names, of which the last line counts";

@@ -201,6 +201,7 @@ TEST(Estimator, StatisticsOfAnotherBasisAreRefused) {
   const std::uint64_t plain = header_of({});
   EXPECT_EQ(plain, header_of({.moving_mass_kg = 1000.0})) << "the mass is no part of the basis";
   EXPECT_NE(plain, header_of({.sample_rate_hz = 200.0}));
+  EXPECT_NE(plain, header_of({.sample_rate_hz = 300.001})) << "windows of as many samples";
   EXPECT_NE(plain, header_of({.velocity_corner_hz = 1.0}));
   EXPECT_NE(plain, header_of({.anti_alias = {.corner_hz = 90.0}}));
   EstimatorConfig nodes;
