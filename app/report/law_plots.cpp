@@ -146,31 +146,39 @@ Plot plot_methods(const RunResult& result) {
   constexpr std::array kTrusted{Ink::kOrange, Ink::kGreen, Ink::kPink};
   const PlotUnit unit = force_unit(result.curve, &CurveRow::force_n);
   svg::Panel panel{{kVelocityLabel}, {fmt::format("F sign v ({})", unit.name), 0.0}};
-  const auto windows = [&](double deviations) {
+  const auto along = [&](const auto& node, double deviations) {
     return against_motion(result, unit.factor, [&, deviations](std::size_t i) {
-      const CurveRow& r = result.curve[i];
-      return r.force_n + (r.velocity_mps < 0.0 ? -deviations : deviations) * r.std_n;
+      const Estimate force_n = node(i);
+      const double out = result.curve[i].velocity_mps < 0.0 ? -deviations : deviations;
+      return force_n.value + out * force_n.std;
     });
   };
   // Each side by itself: a band is one outline.
-  const std::vector<Point> lower = windows(-2.0);
-  const std::vector<Point> upper = windows(2.0);
-  for (const double side : {-1.0, 1.0}) {
-    std::array<std::vector<Point>, 2> of_side;
-    for (std::size_t i = 0; i < lower.size(); ++i) {
-      if (!(side * lower[i].x > 0.0)) continue;
-      of_side[0].push_back(lower[i]);
-      of_side[1].push_back(upper[i]);
+  const auto draw_band = [&](const auto& node, Ink ink) {
+    const std::vector<Point> lower = along(node, -2.0);
+    const std::vector<Point> upper = along(node, 2.0);
+    for (const double side : {-1.0, 1.0}) {
+      std::array<std::vector<Point>, 2> of_side;
+      for (std::size_t i = 0; i < lower.size(); ++i) {
+        if (!(side * lower[i].x > 0.0)) continue;
+        of_side[0].push_back(lower[i]);
+        of_side[1].push_back(upper[i]);
+      }
+      panel.band(of_side[0], of_side[1], ink);
     }
-    panel.band(of_side[0], of_side[1], Ink::kBlue);
-  }
-  panel.line(windows(0.0), {Ink::kBlue, 2.4}, "wavelet windows");
+  };
+  const auto windows = [&](std::size_t i) {
+    return Estimate{result.curve[i].force_n, result.curve[i].std_n};
+  };
+  draw_band(windows, Ink::kBlue);
+  panel.line(along(windows, 0.0), {Ink::kBlue, 2.4}, "wavelet windows");
   std::size_t colour = 0;
   for (const MethodSummary& method : result.methods) {
     if (!method.has_level) continue;
-    const std::vector<Point> line = against_motion(
-        result, unit.factor, [&](std::size_t i) { return method.curve_n.at(i).value; });
+    const auto node = [&](std::size_t i) { return method.curve_n.at(i); };
+    const std::vector<Point> line = along(node, 0.0);
     const Ink ink = method.trusted ? kTrusted.at(colour++ % kTrusted.size()) : Ink::kGrey;
+    if (method.trusted) draw_band(node, ink);
     panel.line(line, {ink, 2.0, !method.trusted},
                method.title + (method.trusted ? "" : " (not to be trusted)"));
     panel.dots(line, ink, 2.0);

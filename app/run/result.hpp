@@ -363,9 +363,9 @@ struct RunResult {
   std::vector<std::pair<std::string, std::uint64_t>> counts;
   Fit fit;
   std::vector<std::string> lacking;  ///< effects that an explanation beside a live result names
-  std::optional<BaseLaw> base;  ///< after an explanation that added something: the model before
-  bool std_is_unproven{false};       ///< outside the range in which deviations were validated
-  bool std_is_lower_bound{false};    ///< unproven, or of a result that is not trusted
+  std::optional<BaseLaw> base;     ///< after an explanation that added something: the model before
+  bool std_is_unproven{false};     ///< outside the range in which deviations were validated
+  bool std_is_lower_bound{false};  ///< unproven, or of a result that is not trusted
   std::optional<double> stick_share;
   std::optional<double> excitation;  ///< share of the record that moved
   std::string asymmetry;             ///< a sentence: what is known about F(v > 0) against F(v < 0)

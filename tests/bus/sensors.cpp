@@ -8,7 +8,7 @@ namespace dampline::bus {
 namespace {
 constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / Sensors::kRateHz};
 constexpr std::int64_t kTogether = 10;  // instants that one system call hands on
-}
+}  // namespace
 
 Sensors::Sensors(RawSender& bus) : bus_{bus} {}
 
