@@ -40,8 +40,8 @@ constexpr std::string_view kFaultText =
     "it was last seen; orange seconds hold samples that it spoils, grey blocks were left out.";
 constexpr std::string_view kMethodText =
     "The force against the direction of motion, as each method finds it; shaded, where it is to be "
-    "trusted: two standard deviations. What stands on an assumption that this record contradicts is "
-    "drawn grey and dashed.";
+    "trusted: two standard deviations. What stands on an assumption that this record contradicts "
+    "is drawn grey and dashed.";
 constexpr std::string_view kDensityText =
     "How often each deflection and each velocity occurred, as densities. The thin line is the "
     "normal distribution of the same mean and variance.";
