@@ -163,7 +163,8 @@ TEST_F(Trusting, AModelThatDoesNotFitNamesExplain) {
   EXPECT_FALSE(states_a_number(found)) << found.at("headline");
   const auto lax = program_.run("identify run.csv --config car.toml --out lax");
   EXPECT_EQ(lax.code, 0);
-  EXPECT_THAT(lax.output, HasSubstr("model_incomplete"));
+  EXPECT_THAT(lax.output, AllOf(HasSubstr("model_incomplete"), HasSubstr("are lower bounds")));
+  EXPECT_TRUE(found.at("std_is_lower_bound"));
   EXPECT_THAT(program_.read("lax/report.html"),
               HasSubstr("Trust</dt><dd class=\"value\">model incomplete<"));
 }
@@ -174,6 +175,8 @@ TEST_F(Trusting, TheResultOfAnExplanationIsTheFinalLaw) {
   const json base = json::parse(program_.read("i/parameters.json"));
   const json found = explained(0);
   EXPECT_EQ(found.at("trust"), "trusted") << found.at("trust_reasons");
+  EXPECT_TRUE(base.at("std_is_lower_bound"));
+  EXPECT_FALSE(found.at("std_is_lower_bound"));
   const json explanation = json::parse(program_.read("e/explanation.json"));
   EXPECT_EQ(found.at("parameters"), explanation.at("final").at("parameters"));
   EXPECT_EQ(found.at("base").at("parameters"), explanation.at("base").at("parameters"));

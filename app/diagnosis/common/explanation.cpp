@@ -338,6 +338,7 @@ std::string summarize(const Explanation& e) {
   if (e.signature.rms_n > 0.0) text += "what is left: " + describe(e.signature) + "\n";
   text += fmt::format("trust  {}\n", name_of(e.trust));
   for (const std::string& reason : e.trust_reasons) text += "       " + reason + "\n";
+  if (e.trust != Trust::kTrusted) text += "       The stated deviations are lower bounds.\n";
   for (const Validated& v : e.validation) text += validated_text(v);
   for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
