@@ -29,9 +29,9 @@ void each_beside(std::size_t count, const Function& function) {
   const auto work = [&] {
     for (std::size_t i = next++; i < count; i = next++) function(i);
   };
-  std::vector<std::future<void>> others(
-      std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency())) - 1);
-  for (std::future<void>& other : others) other = beside(work);
+  const std::size_t at_once = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> others;
+  for (std::size_t i = 1; i < at_once; ++i) others.push_back(beside(work));
   work();
   for (std::future<void>& other : others) other.get();
 }
