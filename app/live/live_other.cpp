@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/live/live_other.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -91,8 +92,9 @@ std::optional<Explained> LiveOther::find(const LiveKnown& known, const std::vect
 
 double LiveOther::look(const LiveKnown& known, const LiveFloor& kept, double time_s,
                        effect::Explainer& explainer, Explained& out) {
-  if (time_s >= looked_s_ + kEveryS) {
+  if (time_s >= next_s_) {
     looked_s_ = time_s;
+    next_s_ = time_s + std::max(kEveryS, std::min(time_s, LiveFloor::kKeptS) / 2.0);
     with_ = find(known, kept.kept(), explainer, out);
   }
   if (!with_ || out.withheld || out.drifts) return time_s;

@@ -22,10 +22,12 @@ struct LiveKnown {
                               effect::Explainer& explainer, Explained& out);
 
 /// The truck under the other end of the body in a live run's explanation: now and then, the motion
-/// that the floor keeps is explained as a file of it would be, without that truck and with it.
+/// that the floor keeps is explained as a file of it would be, without that truck and with it. Once
+/// it is full, that is when half of it is new.
 class LiveOther {
  public:
-  static constexpr double kEveryS = 20.0;  ///< a tenth of a second of work, 2 s where it is found
+  /// Between two looks at first: each is a tenth of a second of work, 2 s where it is found.
+  static constexpr double kEveryS = 20.0;
 
   explicit LiveOther(const IdentifierConfig& core) : core_{core} {}
   /// `out`: the run explained without it at `time_s`; with it where that leaves less, now or when
@@ -33,14 +35,15 @@ class LiveOther {
   double look(const LiveKnown& known, const LiveFloor& kept, double time_s,
               effect::Explainer& explainer, Explained& out);
   /// The next look is a new one.
-  void forget() noexcept { looked_s_ = -kEveryS; }
+  void forget() noexcept { next_s_ = looked_s_ = 0.0; }
 
  private:
   std::optional<Explained> find(const LiveKnown& known, const std::vector<Sample>& samples,
                                 effect::Explainer& explainer, const Explained& run) const;
 
   IdentifierConfig core_;
-  double looked_s_{-kEveryS};
+  double looked_s_{0.0};
+  double next_s_{0.0};
   std::optional<Explained> with_;  // as it was last found
 };
 

@@ -34,7 +34,7 @@ class TimeTravelDisk : public testing::Test {
     return {"--config", folder_ / "car.toml", "--publish-every", "1", "--realtime-priority", "0"};
   }
   [[nodiscard]] Child send(double duration_s) const {
-    return Child{simulate_command(bus_.name(), duration_s, 1), folder_.path()};
+    return Child{simulate_command(bus_.name(), duration_s, 10), folder_.path()};
   }
   [[nodiscard]] Words command(const fs::path& run) const {
     Words words{DAMPLINE_BINARY_DIR "/dampline",

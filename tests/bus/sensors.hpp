@@ -24,7 +24,8 @@ class Sensors {
   std::function<std::vector<CanFrame>(std::size_t channel, const CanFrame& frame)> fate;
   /// The codes of the next instant; without it any that change.
   std::function<std::array<std::int16_t, kChannels>()> motion;
-  /// Instants that go out together: one wake-up costs more than many frames.
+  /// Instants that go out together, and, where they are several, whole before a reader looks: one
+  /// wake-up costs more than many frames.
   std::int64_t batch{1};
   /// Sends at the pace of real sensors.
   void run(std::chrono::duration<double> time);

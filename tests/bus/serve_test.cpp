@@ -80,7 +80,7 @@ TEST(TimeTravelServe, IsSeenByManyAndDisturbedByNone) {
     streams.push_back(std::make_unique<Reader>("/events"));
     ASSERT_TRUE(streams.back()->sent());
   }
-  Child simulate{simulate_command(bus.name(), 90.0, 1), folder.path()};
+  Child simulate{simulate_command(bus.name(), 90.0, 10), folder.path()};
   std::this_thread::sleep_for(seconds{20});
   EXPECT_THAT(Reader{"/live.json"}.read(), HasSubstr("Collecting motion for the first estimate"));
   for (int i = 0; i < 60; ++i) {
