@@ -36,4 +36,13 @@ void each_beside(std::size_t count, const Function& function) {
   for (std::future<void>& other : others) other.get();
 }
 
+/// Likewise where so many values, each touched once or twice, take longer than threads to begin;
+/// otherwise one call after the other.
+template <class Function>
+void each_of_values(std::ptrdiff_t values, std::size_t count, const Function& function) {
+  constexpr std::ptrdiff_t kWorthThreads = 50'000;  // a millisecond of work
+  if (values > kWorthThreads) return each_beside(count, function);
+  for (std::size_t i = 0; i < count; ++i) function(i);
+}
+
 }  // namespace dampline::app

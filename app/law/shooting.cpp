@@ -451,7 +451,8 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
     const VectorXd before = unknowns;
     const std::vector<Segment> segments = segments_;
     const Index shorter = length;
-    length = std::min(longest, static_cast<Index>(longer * static_cast<double>(length)));
+    length = static_cast<Index>(longer * static_cast<double>(length));
+    if (2 * length > longest) length = longest;  // a segment takes the rest with it
     cut(length);
     double then = 0.0;
     if (settle(unknowns) && descend(unknowns, length < longest ? kNearly : kArrived, then) &&

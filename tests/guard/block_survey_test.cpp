@@ -253,6 +253,25 @@ TEST(BlockSurvey, TheWheelsetsNoiseIsBoundByTheEndOfTheBand) {
   EXPECT_NEAR(with_edge(0.02).noise[2], kDensity * 0.02, 1e-9 * kDensity);
 }
 
+// Each wheelset's own is what it has beyond what both share, which their gains divide.
+TEST(BlockSurvey, NoiseIsThatWheelsetsWhichHasIt) {
+  constexpr double kNoise = 0.02;
+  constexpr std::size_t kFrom = 180;  // above what both share in any case
+  for (const double gain : {0.5, 1.0, 2.0})
+    for (const std::size_t noisy : {0U, 1U}) {
+      SpectrumSums sums = sums_of({.gain = gain});
+      for (std::size_t k = kFrom; k < kSpectrumBins; ++k) {
+        if (noisy == 1) sums.wheelset2[k] += kNoise;
+        if (noisy == 0) sums.delayed1[k] = sums.wheelset1[k] += kNoise;
+      }
+      const BlockFigures figures = survey_of(sums);
+      const double own = figures.noise[1 + noisy];
+      const double other = figures.noise[2 - noisy];
+      EXPECT_GT(own, 10.0 * other) << gain << ' ' << noisy;
+      EXPECT_GT(own, 0.2 * kNoise * kDensity) << gain << ' ' << noisy;
+    }
+}
+
 TEST(BlockSurvey, WhatWheelsDoNotShareIsADensity) {
   SpectrumSums sums = sums_of({});
   for (auto& cross : sums.aligned) cross = 0.7;

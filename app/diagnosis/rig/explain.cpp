@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -177,18 +178,21 @@ std::vector<std::string> base_of(const std::vector<Series>& records, bool inerti
   return {&alone == &damped ? "viscous" : "coulomb"};
 }
 
-Explained look_for(Config config, const ExplainOptions& options) {
+Explained read(const Config& config, const ExplainOptions& options) {
   Explained out{config, read_records(config, options), {}, {}};
   for (const Series& record : out.records) out.gains.push_back(checked_gains(record));
+  return out;
+}
+
+void look_for_law(Explained& out, const ExplainOptions& options) {
+  Config config = out.config;
   if (!is_base_declared(config.model))
     config.model.base = base_of(out.records, config.model.inertia == "identify");
   const bool chosen = config.model.base != out.config.model.base;
-  config.model.base_is_set = out.config.model.base_is_set;
   out.explanation = search(config, out.records, is_base_declared(out.config.model), options.refine);
   if (chosen)
     out.explanation.notes.emplace_back(
         "Nobody declared a base: the record bears out what stands there. To fix it: [model] base");
-  return out;
 }
 
 /// A mass behind a filter, which takes noise away, has to be plainer or better by far.
@@ -217,32 +221,45 @@ bool is_driven_mass(const std::vector<Series>& records) {
          with.held_out_nmse < kDominantMass * without.held_out_nmse;
 }
 
-/// Where an inertia carries much of the force, the mass is identified too.
-void try_driven_mass(Explained& found, const ExplainOptions& options) {
-  Explanation& first = found.explanation;
-  if (found.config.model.inertia != "auto" || !is_driven_mass(found.records)) return;
-  if (has_gaps(found.records)) {
-    first.notes.insert(first.notes.begin(),
-                       "An inertia carries much of the force, but the record has gaps: no mass was "
-                       "identified, and what follows describes the force without it.");
-    return;
-  }
-  Config config = found.config;
+Explained with_mass(Config config, const ExplainOptions& options) {
   config.model.inertia = "identify";
-  Explained driven = look_for(config, options);
-  Explanation& second = driven.explanation;
-  if (!is_preferred(second, first)) return;
-  second.notes.insert(second.notes.begin(),
-                      "An inertia carries much of the force: the mass is identified too. To leave "
-                      "it out: [model] inertia = \"none\"");
-  found = std::move(driven);
+  Explained out = read(config, options);
+  look_for_law(out, options);
+  auto& notes = out.explanation.notes;
+  notes.insert(notes.begin(),
+               "An inertia carries much of the force: the mass is identified too. To leave it out: "
+               "[model] inertia = \"none\"");
+  return out;
+}
+
+/// Nothing says more than a motion that the force alone makes: the law without a mass need not be
+/// looked for.
+bool is_certain(const Explanation& driven) {
+  return driven.base.fit.ok && driven.is_complete() && driven.final.free_run.followed;
+}
+
+/// Where an inertia carries much of the force, with its mass.
+Explained look_for(const Config& config, const ExplainOptions& options) {
+  Explained out = read(config, options);
+  const bool driven = config.model.inertia == "auto" && is_driven_mass(out.records);
+  const bool gaps = driven && has_gaps(out.records);
+  std::optional<Explained> second;
+  if (driven && !gaps) second = with_mass(config, options);
+  if (second && is_certain(second->explanation)) return *std::move(second);
+  look_for_law(out, options);
+  if (second && is_preferred(second->explanation, out.explanation)) return *std::move(second);
+  if (gaps)
+    out.explanation.notes.insert(
+        out.explanation.notes.begin(),
+        "An inertia carries much of the force, but the record has gaps: no mass was identified, "
+        "and what follows describes the force without it.");
+  return out;
 }
 
 }  // namespace
 
 Explanation explain(const Config& given, const ExplainOptions& options) {
   Explained found = look_for(given, options);
-  try_driven_mass(found, options);
   const std::vector<Series>& records = found.records;
   Explanation& out = found.explanation;
   for (const Series& record : records)

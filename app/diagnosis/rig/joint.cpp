@@ -111,13 +111,20 @@ void move(const Place& p, double by, Model& model, std::vector<Series>& records)
   }
 }
 
-/// What the model makes of the records with a place elsewhere, its coefficients as they are.
+/// What a place moves of the force, with it elsewhere and the coefficients as they are.
 std::vector<Eigen::VectorXd> forces_at(Model model, std::vector<Series> records, const Place& p,
                                        double by) {
   move(p, by, model, records);
+  std::vector<Regressor> columns;
+  std::vector<double> theta;
+  for (std::size_t c = 0; c < model.columns.size(); ++c) {
+    if (!p.columns.empty() && std::count(p.columns.begin(), p.columns.end(), c) == 0) continue;
+    columns.push_back(model.columns[c]);
+    theta.push_back(model.fit.theta[static_cast<Eigen::Index>(c)]);
+  }
   std::vector<Eigen::VectorXd> out;
-  for (const Equations& e : equations_of(model.columns, records))
-    out.emplace_back(e.values.leftCols(model.fit.theta.size()) * model.fit.theta);
+  for (const Equations& e : equations_of(columns, records, is_filtered(model.columns)))
+    out.emplace_back(e.values.leftCols(e.values.cols() - 1) * vector_of(theta));
   return out;
 }
 

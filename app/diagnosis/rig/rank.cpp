@@ -154,7 +154,7 @@ std::string prefer_viscoelastic(State& s, std::vector<Ranked>& order) {
   if (!is_clearly_better(element->fit, full)) return fmt::format("{} or viscoelastic", memory);
   const Eigen::Index column = s.library.add(element->column);
   s.library.candidates.push_back({"viscoelastic", element->column.a, {column}, 1});
-  evaluate_columns(s);
+  evaluate_added(s);
   order = rank(s);
   const auto found = std::find_if(order.begin(), order.end(), [](const Ranked& r) {
     return r.candidate->effect == "viscoelastic";

@@ -29,7 +29,7 @@ void widen(State& s) {
   for (const double a :
        ratios(width_of(now.width), kWidestOfAll * s.scale.velocity_mps, kFrictionWidthRatio))
     s.library.friction.push_back(s.library.add({Kind::kSign, kFrictionWidthRatio * a, 0.0}));
-  evaluate_columns(s);
+  evaluate_added(s);
   if (judge(s, beside_both(s)).fit.held_out_nmse > kClearlyWider * now.fit.held_out_nmse)
     s.library.friction.resize(before);
 }
@@ -49,7 +49,7 @@ void try_bank(State& s, Chosen& memory) {
   std::vector<BankElement> elements;
   for (const double share : ratios(kBankFrom, kBankTo, kBankStep))
     elements.push_back(add_bank_element(s.library, share * memory.candidate.place));
-  evaluate_columns(s);
+  evaluate_added(s);
   const Candidate small = memory.candidate;
   double least = error(s);
   ColumnSet best = small.columns;
@@ -87,7 +87,7 @@ void try_bouc_wen(State& s, Chosen& memory) {
   s.bouc_wen = best_bouc_wen(s.records, trial_base(s), s.scale.deflection_m);
   if (s.bouc_wen) {
     memory.candidate.columns = {s.library.add(s.bouc_wen->column)};
-    evaluate_columns(s);
+    evaluate_added(s);
     const double with = error(s);
     s.base_friction_left = false;
     const double alone = error(s);
@@ -122,7 +122,7 @@ void refine_width(State& s) {
     ratio = std::sqrt(ratio);
     for (const double a : {best.a / ratio, best.a * ratio})
       s.library.friction.push_back(s.library.add({Kind::kSign, a, 0.0}));
-    evaluate_columns(s);
+    evaluate_added(s);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "app/beside.hpp"
 #include "dampline/rig/config.hpp"
 
 namespace dampline::app::rig {
@@ -78,11 +79,10 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& products, const ColumnSet& set) {
 }  // namespace
 
 std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
-                                    const std::vector<Series>& records) {
-  const bool filtered = is_filtered(columns);
+                                    const std::vector<Series>& records, bool filtered) {
   std::vector<Equations> out;
   for (const Series& record : records) {
-    Rows rows = rows_of(columns, record, stride_of(record, filtered));
+    Rows rows = rows_of(columns, record, stride_of(record, filtered), filtered);
     std::vector<Eigen::Index> moving;
     std::vector<Eigen::Index> kept;
     for (std::size_t i = 0; i < rows.sample.size(); ++i) {
@@ -105,17 +105,19 @@ std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
 
 Regression::Regression(const std::vector<Equations>& records) : records_{records.size()} {
   const std::size_t parts = std::max<std::size_t>(3, kBlocksOfAll / records.size());
+  blocks_.resize(records.size() * parts);
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Eigen::Index count = records[r].values.rows();
-    for (std::size_t p = 0; p < parts; ++p) {
-      const auto from = count * static_cast<Eigen::Index>(p) / static_cast<Eigen::Index>(parts);
-      const auto to = count * static_cast<Eigen::Index>(p + 1) / static_cast<Eigen::Index>(parts);
-      const auto block = records[r].values.middleRows(from, to - from);
+    const Eigen::MatrixXd& values = records[r].values;
+    each_of_values(values.size(), parts, [&](std::size_t p) {
+      const auto place_of = [&](std::size_t part) {
+        return values.rows() * static_cast<Eigen::Index>(part) / static_cast<Eigen::Index>(parts);
+      };
+      const auto block = values.middleRows(place_of(p), place_of(p + 1) - place_of(p));
       Block out{Eigen::MatrixXd::Zero(block.cols(), block.cols()), r, r, 2 * p < parts};
       out.products.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose(), records[r].weight);
       out.products.triangularView<Eigen::StrictlyUpper>() = out.products.transpose();
-      blocks_.push_back(std::move(out));
-    }
+      blocks_[r * parts + p] = std::move(out);
+    });
   }
   folds_ = records_;
   if (records_ >= kFewestRecords) return;

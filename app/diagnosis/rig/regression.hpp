@@ -46,8 +46,14 @@ struct Equations {
   std::vector<Eigen::Index> sample;  ///< of the record, of each row
   double weight{0.0};                ///< 1 / (N var f), standstill apart
 };
+/// `filtered`: as beside an inertia.
 [[nodiscard]] std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
-                                                  const std::vector<Series>& records);
+                                                  const std::vector<Series>& records,
+                                                  bool filtered);
+[[nodiscard]] inline std::vector<Equations> equations_of(const std::vector<Regressor>& columns,
+                                                         const std::vector<Series>& records) {
+  return equations_of(columns, records, is_filtered(columns));
+}
 
 /// Sums of products of all columns, block by block. Every record counts alike: its rows are divided
 /// by N var f. Held out are whole records where there are three or more, otherwise blocks, dealt

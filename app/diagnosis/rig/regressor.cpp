@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/beside.hpp"
 #include "app/diagnosis/rig/trials.hpp"
 #include "dampline/rig/columns.hpp"
 
@@ -83,8 +84,8 @@ Eigen::VectorXd left_of(const Series& series, const std::vector<Regressor>& colu
   return out;
 }
 
-Rows rows_of(const std::vector<Regressor>& columns, const Series& series, Eigen::Index stride) {
-  const bool filtered = is_filtered(columns);
+Rows rows_of(const std::vector<Regressor>& columns, const Series& series, Eigen::Index stride,
+             bool filtered) {
   const int half = filtered ? core::half_support_samples(series.config) : 0;
   const core::TestFunction window{std::max(half, core::TestFunction::kDifference + 1),
                                   series.interval_s};
@@ -109,7 +110,8 @@ Rows rows_of(const std::vector<Regressor>& columns, const Series& series, Eigen:
   rate /= sum;
   second /= sum;
   const bool derived = filtered && !series.config.velocity_measured;
-  for (Eigen::Index c = 0; c <= count; ++c) {
+  const auto fill = [&](std::size_t place) {
+    const auto c = static_cast<Eigen::Index>(place);
     const bool force = c == count;
     Regressor column = force ? Regressor{} : columns[static_cast<std::size_t>(c)];
     const bool rates = derived && !force && column.kind == Kind::kVelocity &&
@@ -121,7 +123,8 @@ Rows rows_of(const std::vector<Regressor>& columns, const Series& series, Eigen:
       const Eigen::Index centre = out.sample[static_cast<std::size_t>(r)];
       out.values(r, c) = weights.dot(values.segment(centre - reach, 2 * reach + 1));
     }
-  }
+  };
+  each_of_values(series.size() * count, static_cast<std::size_t>(count + 1), fill);
   return out;
 }
 

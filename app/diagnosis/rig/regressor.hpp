@@ -22,14 +22,19 @@ using law::Regressor;
 [[nodiscard]] Eigen::VectorXd left_of(const Series& series, const std::vector<Regressor>& columns,
                                       const Eigen::VectorXd& theta);
 
-/// Equations: one per row, a column per regressor and the force as the last. Without kInertia every
-/// `stride`-th sample as it is. With it, everything seen through the same test function (corner
-/// config.corner_hz), which also takes the second derivative; `sample` is each row's centre.
+/// Equations: one per row, a column per regressor and the force as the last: every `stride`-th
+/// sample as it is or, filtered, as an inertia needs it, everything seen through the same test
+/// function (corner config.corner_hz), which also takes the second derivative; `sample` is each
+/// row's centre.
 struct Rows {
   Eigen::MatrixXd values;
   std::vector<Eigen::Index> sample;
 };
 [[nodiscard]] Rows rows_of(const std::vector<Regressor>& columns, const Series& series,
-                           Eigen::Index stride);
+                           Eigen::Index stride, bool filtered);
+[[nodiscard]] inline Rows rows_of(const std::vector<Regressor>& columns, const Series& series,
+                                  Eigen::Index stride) {
+  return rows_of(columns, series, stride, is_filtered(columns));
+}
 
 }  // namespace dampline::app::rig

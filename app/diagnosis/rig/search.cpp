@@ -266,7 +266,7 @@ void chain(State& s, const Explanation& out) {
 Fit richest(const State& s) {
   ColumnSet all(s.library.columns.size());
   std::iota(all.begin(), all.end(), 0);
-  return s.regression->fit(all, kRichRidge);
+  return s.evaluated->regression.fit(all, kRichRidge);
 }
 
 /// What a complete law would leave, never more than a law that was tried does.
@@ -326,7 +326,7 @@ Explanation search(const Config& config, const std::vector<Series>& records, boo
   s.library.base_is_declared = base_is_declared;
   Explanation out;
   for (const Series& r : records) out.records.push_back(r.record);
-  out.whole_records = s.regression->folds() == records.size();
+  out.whole_records = s.evaluated->regression.folds() == records.size();
   if (filtered(s)) out.filter_hz = records.front().config.corner_hz;
   if (s.library.may_add_spring) take_dominant_spring(s);
   for (const std::string& effect : s.library.base_searched) take_of_base(s, effect);

@@ -13,8 +13,31 @@ State::State(const Config& config, const std::vector<Series>& given)
   evaluate_columns(*this);
 }
 
-void evaluate_columns(State& s) {
-  s.regression = std::make_shared<const Regression>(s.library.columns, s.records);
+namespace {
+
+void evaluate(State& s, std::vector<Equations> equations) {
+  Regression regression{equations};
+  s.evaluated =
+      std::make_shared<const Evaluated>(Evaluated{std::move(equations), std::move(regression)});
+}
+
+}  // namespace
+
+void evaluate_columns(State& s) { evaluate(s, equations_of(s.library.columns, s.records)); }
+
+void evaluate_added(State& s) {
+  const std::vector<Equations>& before = s.evaluated->equations;
+  const Eigen::Index known = before.front().values.cols() - 1;
+  const auto first = s.library.columns.begin() + known;
+  if (filtered(s) != is_filtered({s.library.columns.begin(), first})) return evaluate_columns(s);
+  std::vector<Equations> all =
+      equations_of({first, s.library.columns.end()}, s.records, filtered(s));
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    Eigen::MatrixXd values{all[r].values.rows(), known + all[r].values.cols()};
+    values << before[r].values.leftCols(known), all[r].values;
+    all[r].values = std::move(values);
+  }
+  evaluate(s, std::move(all));
 }
 
 bool has_friction(const State& s) { return s.library.base_friction && s.base_friction_left; }
@@ -45,7 +68,7 @@ Judged judge(const State& s, const ColumnSet& more) {
   const bool profiled = has_friction(s);
   for (std::size_t w = 0; w < (profiled ? s.library.friction.size() : 1); ++w) {
     ColumnSet set = set_of(s, more, w);
-    Fit fit = s.regression->fit(set, ridge(s));
+    Fit fit = s.evaluated->regression.fit(set, ridge(s));
     if (fit.beats(best.fit)) best = {std::move(fit), w, std::move(set)};
   }
   return best;

@@ -38,6 +38,12 @@ struct Judged {
   }
 };
 
+/// The library's columns over the records.
+struct Evaluated {
+  std::vector<Equations> equations;
+  Regression regression;
+};
+
 /// A search on its way: what is known and what was chosen. Functions of it rank the candidates,
 /// accept one, refine it, and prune what is no longer needed.
 struct State {
@@ -46,7 +52,7 @@ struct State {
   std::vector<Series> records;
   Scale scale;
   Library library;
-  std::shared_ptr<const Regression> regression;
+  std::shared_ptr<const Evaluated> evaluated;
   std::vector<Chosen> chosen;
   std::vector<BankElement> bank;       ///< in use
   std::optional<BestColumn> bouc_wen;  ///< in the place of a bank
@@ -81,6 +87,8 @@ struct State {
 [[nodiscard]] ColumnSet beside_both(const State& s, const ColumnSet& more = {});
 /// After the library or the records have changed.
 void evaluate_columns(State& s);
+/// After columns were added to the library, and nothing else has changed.
+void evaluate_added(State& s);
 void choose(State& s, Candidate candidate, double gain, double t);
 [[nodiscard]] std::vector<Regressor> columns_of(const State& s, const ColumnSet& set);
 [[nodiscard]] double ridge(const State& s);

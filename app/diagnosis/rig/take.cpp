@@ -72,13 +72,13 @@ void leave_impacts_out(State& s) {
   std::vector<Series> kept = s.records;
   for (std::size_t r = 0; r < kept.size(); ++r) kept[r].left_out = impacts.left_out[r];
   std::swap(s.records, kept);
-  const auto all = s.regression;
+  const auto all = s.evaluated;
   evaluate_columns(s);
   const Fit after = judge(s, {}).fit;
   const double gain = gain_of(before.fit, after);
   if (!after.ok || gain < kLeastGain) {
     std::swap(s.records, kept);
-    s.regression = all;
+    s.evaluated = all;
     return;
   }
   choose(s, {"impulsive_input", 0.0, {}, 0}, gain, block_t(before.fit, after));
