@@ -20,6 +20,7 @@ constexpr double kLongestS = 3600.0;
 constexpr double kShortestDelayS = 0.2;  // below, what one model leaves follows its own motion
 constexpr double kLongestDelayS = 2.0;   // pivots 9 m apart at 16 km/h
 constexpr double kLeastCorrelation = 0.1;
+constexpr double kLeastShare = 0.05;  // of the mass that the body has at the other truck
 constexpr double kOneSided = 0.5;  // joints of the rail show on both sides
 constexpr int kSteps = 4;
 constexpr std::size_t kParts = 20;
@@ -228,6 +229,7 @@ std::optional<OtherTruck> OtherTruckSearch::find(const FrameLaw& law) const {
     out.delay_s = {delay_ticks / rate_hz_,
                    all.std([](const auto& x) { return x[1] / x[0]; }) / rate_hz_};
   }
+  if (share < kLeastShare) return std::nullopt;
   out.first_tick = *first_tick_;
   out.accel_mps2 = other_frame(frame, law, share, delay_ticks, rate_hz_);
   return out;
