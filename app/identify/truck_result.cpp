@@ -126,6 +126,7 @@ RunResult describe_truck(const TruckRecord& record, const ModelConfig& model) {
   result.duration_s = record.time_s(record.newest_tick + 1);
   result.fit.law_width_mps = result.parameters.back().value;
   result.fit.law_width_share = *result.fit.law_width_mps / s.velocity_rms_mps;
+  result.fit.velocity_rms_mps = s.velocity_rms_mps;
   if (!viscous)
     result.fit.viscous = {s.viscous_nspm.value * s.velocity_rms_mps / s.coulomb_n.value,
                           s.viscous_nspm.value / s.viscous_nspm.std};

@@ -200,9 +200,10 @@ struct Fit {
   std::optional<double> nmse;
   std::optional<double> rrse;
   std::optional<double> held_out_nmse;
-  std::optional<ViscousPart> viscous{};     ///< this one and the next two are in no file
-  std::optional<double> law_width_mps{};    ///< of a truck
-  std::optional<double> law_width_share{};  ///< of the rms velocity; absent: of another law
+  std::optional<ViscousPart> viscous{};      ///< this one and the next three are in no file
+  std::optional<double> law_width_mps{};     ///< of a truck
+  std::optional<double> law_width_share{};   ///< of the rms velocity; absent: of another law
+  std::optional<double> velocity_rms_mps{};  ///< of a truck
 };
 
 /// Whether a script may act on a result, from good to bad.

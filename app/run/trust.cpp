@@ -27,6 +27,7 @@ constexpr double kWidestLawMps = 6e-3;  // a wider one is no error of the veloci
 constexpr double kStickMps = 2e-3;      // below it a truck counts as sticking
 constexpr double kNothingFitted = 0.8;  // of the variance, left
 constexpr double kSure = 3.0;           // deviations
+constexpr double kFallsWithin = 0.5;    // of the rms velocity, of friction that falls
 constexpr double kWidestShare = 0.7;    // of the rms velocity, of a law whose level is seen
 constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
 constexpr double kViscousSigmas = 5.0;
@@ -109,6 +110,19 @@ void judge_numbers(const RunResult& result, Reasons& out) {
       return;
     }
   }
+}
+
+/// Friction that falls over more speed than the motion has does not show to which level.
+void judge_fall(const RunResult& result, Reasons& out) {
+  const Parameter* const speed = find_parameter(result.parameters, "stribeck_speed");
+  if (speed == nullptr || !result.fit.velocity_rms_mps) return;
+  const double share = speed->value / *result.fit.velocity_rms_mps;
+  if (share <= kFallsWithin) return;
+  out.emplace_back(
+      Trust::kModelIncomplete,
+      fmt::format("Friction falls over {:.2g} times the rms velocity: the motion hardly shows to "
+                  "which level.",
+                  share));
 }
 
 void judge_width(const RunResult& result, Reasons& out) {
@@ -241,6 +255,7 @@ void judge_trust(const Explaining* explaining, RunResult& result) {
   judge_data(explaining, result, reasons);
   judge_numbers(result, reasons);
   judge_width(result, reasons);
+  judge_fall(result, reasons);
   judge_fit(explaining, result, reasons);
   if (explaining == nullptr) judge_terms(result, reasons);
   judge_speed(explaining, result, reasons);

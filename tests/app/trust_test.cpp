@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the program says of records that it must not trust, and of those that it may.
+#include "app/run/trust.hpp"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,6 +25,23 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+
+TEST(Trust, FrictionThatFallsBeyondTheMotionStatesNoLevel) {
+  RunResult result;
+  result.kind = "truck";
+  result.parameters = {{"coulomb", 5000.0, 50.0, "N"},
+                       {"stiffness", 2e6, 1e4, "N/m"},
+                       {"stribeck_speed", 0.01, 0.004, "m/s"}};
+  result.fit.held_out_nmse = 0.02;
+  result.fit.velocity_rms_mps = 0.025;
+  const Explaining judged{.judged = true};
+  judge_trust(&judged, result);
+  EXPECT_EQ(result.trust, Trust::kTrusted) << result.headline;
+  result.fit.velocity_rms_mps = 0.015;
+  judge_trust(&judged, result);
+  EXPECT_EQ(result.trust, Trust::kModelIncomplete);
+  EXPECT_THAT(result.headline, HasSubstr("0.67 times the rms velocity"));
+}
 
 /// time, frame, wheelset 1, wheelset 2.
 using Row = std::array<double, 4>;

@@ -56,6 +56,15 @@ TEST(UnseenTruck, OfAnUnevenSpringHasNoStop) {
   EXPECT_EQ(s.names(), "asymmetric_stiffness ");
 }
 
+// Springs that differ by 58 %: their kink lies a fifth of the motion off its mean, which was a stop
+// at 1.3 mm, a memory and another truck, with a spring 32 % too soft that was "trusted".
+TEST(UnseenTruck, OfAVeryUnevenSpringHasItsStiffness) {
+  const Seen s = seen(5019, 300.0);
+  EXPECT_STREQ(s.truck.truck.name, "asymmetric_stiffness");
+  EXPECT_EQ(s.names(), "asymmetric_stiffness ");
+  for (const auto& [name, truth] : s.truck.truths) expect_within(s, name, truth);
+}
+
 // What takes up the gap yields by 0.05 mm, which was a frame that is 0.7 ms late.
 TEST(UnseenTruck, OfABacklashThatYieldsHasNoLateFrame) {
   const Seen s = seen(57, 200.0);

@@ -45,6 +45,60 @@ TEST(Grids, RiseByTheSameFactor) {
                1.6, 0.02);
 }
 
+/// A spring that differs by direction, 1000 N/m in the mean.
+Explanation uneven(double difference_npm) {
+  Explanation out = with_step(Effect::kAsymmetricStiffness, kPlainForm, 0, 0.0);
+  out.final_stiffness_npm.value = 1000.0;
+  out.step[0].parameter[0].estimate.value = difference_npm;
+  out.step[0].parameter_count = 1;
+  return out;
+}
+
+// The mean force of a Gaussian motion about the kink's other side, by quadrature.
+TEST(Grids, AnUnevenSpringBendsWhereItsMeanForceIsNone) {
+  for (const double difference : {-900.0, -200.0, 300.0, 800.0}) {
+    Grids out;
+    ASSERT_TRUE(draw_together(uneven(difference), 0, out));
+    double force = 0.0;
+    double size = 0.0;
+    for (double y = -6.0; y <= 6.0; y += 1e-3) {
+      const double x = y - out.kink;
+      const double weight = std::exp(-0.5 * y * y);
+      force += weight * (1000.0 * x + 0.5 * difference * std::abs(x));
+      size += weight * std::abs(0.5 * difference * x);
+    }
+    EXPECT_LT(std::abs(force), 0.02 * size) << difference;
+    EXPECT_GT(out.kink * difference, 0.0);
+  }
+  Grids out;
+  EXPECT_FALSE(draw_together(with_step(Effect::kAsymmetricStiffness, kPlainForm, 0, 0.0), 0, out));
+}
+
+TEST(Grids, AStopOnOneSideNearTheMiddleMayBeAKink) {
+  for (const Form side : {kOneSidedUp, kOneSidedDown}) {
+    Explanation e = with_step(Effect::kBumpStop, side, 0, 0.0);
+    e.final_stiffness_npm.value = 800.0;
+    Step& step = e.step[0];
+    step.parameter_count = 2;
+    step.parameter[0] = {"bump_stop_stiffness", {400.0, 20.0}, "N/m"};
+    step.runner_up_count = 1;
+    step.runner_up[0].effect = Effect::kAsymmetricStiffness;
+    ASSERT_TRUE(as_kink(e));
+    EXPECT_EQ(step.chosen.effect, Effect::kAsymmetricStiffness);
+    EXPECT_EQ(step.chosen.form, kPlainForm);
+    EXPECT_EQ(step.parameter[0].estimate.value, side == kOneSidedUp ? 400.0 : -400.0);
+    EXPECT_EQ(e.final_stiffness_npm.value, 1000.0);
+    EXPECT_EQ(step.runner_up[0].effect, Effect::kBumpStop);
+    EXPECT_EQ(step.other[0].form, side);
+  }
+  Explanation far = with_step(Effect::kBumpStop, kOneSidedUp, 2, 2.0);
+  EXPECT_FALSE(as_kink(far)) << "1.2 rms of the motion";
+  Explanation both = with_step(Effect::kBumpStop, kPlainForm, 0, 0.0);
+  EXPECT_FALSE(as_kink(both));
+  Explanation none;
+  EXPECT_FALSE(as_kink(none));
+}
+
 TEST(Grids, DrawTogetherAroundALength) {
   const Explanation e = with_step(Effect::kBacklash, kPlainForm, 3, 3.5);
   Grids out;

@@ -133,6 +133,21 @@ TEST(Rules, AStopWithinTheMotionIsTheKinkOfAnUnevenSpring) {
   EXPECT_FALSE(is_kink(Effect::kAsymmetricStiffness, 2));
 }
 
+TEST(Rules, MemoryBesideAnUnevenSpringMustGainMoreThanItsKinkLeaves) {
+  Step step;
+  step.chosen.effect = Effect::kPreslidingHysteresis;
+  step.block_t = 10.0;
+  step.coefficient_t = 20.0;
+  for (const Effect spring : {Effect::kAsymmetricStiffness, Effect::kQuadraticStiffness}) {
+    step.gain = 0.08;
+    EXPECT_NE(judge_step(with(spring), false, true, step), Verdict::kYes);
+    step.gain = 0.12;
+    EXPECT_EQ(judge_step(with(spring), false, true, step), Verdict::kYes);
+  }
+  step.gain = 0.08;
+  EXPECT_EQ(judge_step(with(Effect::kCubicStiffness), false, true, step), Verdict::kYes);
+}
+
 TEST(Rules, ALateChannelThatWasSetRightHidesNothing) {
   Candidate late;
   late.effect = Effect::kTimeSkew;  // without a column

@@ -173,12 +173,8 @@ void correct_lateness(const effect::Explanation& closer, effect::Explanation& e)
   widen(closer.final_stiffness_npm, e.final_stiffness_npm);
 }
 
-}  // namespace
-
-void look_closer(const Config& config, const ExplainOptions& options, const TruckPass& first,
-                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
-  if (!can_read_again(options.source.path)) return;
-  CloserLook look{config, options, first, noise, explainer};
+/// False: it stays as it was.
+bool look_closer(CloserLook& look, Explained& out) {
   Explained now = out;
   const bool late = late_channels(out.explanation).count > 0;
   ChannelLateness lateness = values_of(late_of(out.explanation));
@@ -186,11 +182,11 @@ void look_closer(const Config& config, const ExplainOptions& options, const Truc
   for (int round = 0; round < kRounds; ++round) {
     effect::Grids grids;
     const bool has_grids = effect::draw_together(now.explanation, round, grids);
-    if (!late && !has_grids) return;
+    if (!late && !has_grids) return false;
     const double before = now.explanation.final.held_out_nmse;
     LateEstimates left{};
     now.explanation = look.explain(now, grids, lateness, left);
-    if (!now.explanation.final.ok) return;
+    if (!now.explanation.final.ok) return false;
     now.lateness = lateness;
     set_right = true;
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -205,10 +201,25 @@ void look_closer(const Config& config, const ExplainOptions& options, const Truc
   const double limit = (late ? out.explanation.base : out.explanation.final).held_out_nmse;
   if (!(kSettled * now.explanation.final.held_out_nmse < limit)) {
     if (late && set_right) correct_lateness(now.explanation, out.explanation);
-    return;
+    return false;
   }
   out.explanation = now.explanation;
   out.lateness = now.lateness;
+  return true;
+}
+
+}  // namespace
+
+void look_closer(const Config& config, const ExplainOptions& options, const TruckPass& first,
+                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out) {
+  if (!can_read_again(options.source.path)) return;
+  CloserLook look{config, options, first, noise, explainer};
+  Explained kinked = out;
+  const bool may_be_kink = effect::as_kink(kinked.explanation);
+  look_closer(look, out);
+  if (may_be_kink && look_closer(look, kinked) &&
+      kinked.explanation.final.held_out_nmse < out.explanation.final.held_out_nmse)
+    out = std::move(kinked);
 }
 
 }  // namespace dampline::app

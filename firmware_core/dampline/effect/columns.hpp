@@ -82,7 +82,7 @@ enum Column : int {
   kStribeck,                                                  ///< sign v exp(-|v| / v_s)
   kSquare = kStribeck + static_cast<int>(kStribeckSpeeds),    ///< y^2
   kCube,                                                      ///< y^3
-  kMagnitude,                                                 ///< |y|
+  kMagnitude,                                                 ///< |y - kink|
   kBumpUp,                                                    ///< max(y - gap, 0)
   kBumpDown = kBumpUp + static_cast<int>(kBumpGaps),          ///< max(-y - gap, 0)
   kDahl = kBumpDown + static_cast<int>(kBumpGaps),            ///< Dahl's zeta

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "dampline/effect/conclusion.hpp"
 
@@ -69,8 +70,21 @@ void flexible_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
   }
 }
 
-bool step_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
+/// In equilibrium the spring's mean force is none: the kink lies beside the mean of the motion by
+/// half the difference over the stiffness times the mean of |x|, which is, of a Gaussian motion
+/// whose mean lies m of its deviation off, sqrt(2 / pi) (1 + m^2 / 2).
+double kink_of(double difference_npm, double stiffness_npm) noexcept {
+  const double a = std::clamp(0.5 * difference_npm / stiffness_npm, -1.0, 1.0) *
+                   std::sqrt(2.0 / std::numbers::pi);
+  return a / std::sqrt(1.0 - a * a);
+}
+
+bool step_around(const Step& step, double stiffness_npm, const Ratios& r, Grids& grids) noexcept {
   switch (step.chosen.effect) {
+    case Effect::kAsymmetricStiffness:
+      if (!(stiffness_npm > 0.0)) return false;
+      grids.kink = kink_of(step.parameter[0].estimate.value, stiffness_npm);
+      return true;
     case Effect::kStribeck:
       speeds_around(point_at(grids.stribeck_mps, step.place), grids.stribeck_mps);
       return true;
@@ -137,12 +151,34 @@ FlexibleShape flexible_of(const Step& step, const Grids& grids) noexcept {
           point_at(damping, static_cast<double>(line) + step.line_offset)};
 }
 
+bool as_kink(Explanation& e) noexcept {
+  Step& step = e.step[0];
+  const Candidate& c = step.chosen;
+  const bool one_sided = c.form == kOneSidedUp || c.form == kOneSidedDown;
+  if (e.step_count == 0 || c.effect != Effect::kBumpStop || !one_sided) return false;
+  if (!(e.grids.bump_gap[c.variant] < kKinkWithin)) return false;
+  const double stiffer_npm = step.parameter[0].estimate.value;
+  e.final_stiffness_npm.value += 0.5 * stiffer_npm;
+  step.parameter[0].estimate.value = c.form == kOneSidedUp ? stiffer_npm : -stiffer_npm;
+  step.parameter[0].name = "asymmetric_stiffness_difference";
+  step.parameter_count = 1;
+  for (std::size_t r = 0; r < step.runner_up_count; ++r) {
+    if (step.runner_up[r].effect != Effect::kAsymmetricStiffness) continue;
+    step.runner_up[r].effect = Effect::kBumpStop;
+    step.other[r] = c;
+  }
+  step.chosen.effect = Effect::kAsymmetricStiffness;
+  step.chosen.form = kPlainForm;
+  step.chosen.variant = 0;
+  return true;
+}
+
 bool draw_together(const Explanation& e, int round, Grids& grids) noexcept {
   const auto r = static_cast<std::size_t>(std::clamp(round, 0, 2));
   bool any = false;
   grids = e.grids;
   for (std::size_t i = 0; i < e.step_count; ++i) {
-    if (!step_around(e.step[i], kRatios[r], grids)) continue;
+    if (!step_around(e.step[i], e.final_stiffness_npm.value, kRatios[r], grids)) continue;
     grids.fine[static_cast<std::size_t>(e.step[i].chosen.effect)] = true;
     any = true;
   }

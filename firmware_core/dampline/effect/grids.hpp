@@ -11,6 +11,9 @@ namespace dampline::effect {
 struct Explanation;
 struct Step;
 
+/// A stop nearer than that, in rms of y, is the kink of a spring that differs by direction.
+inline constexpr double kKinkWithin = 1.0;
+
 /// The one point of a fine grid of decay speeds.
 inline constexpr std::size_t kFineStribeck = 1;
 
@@ -21,6 +24,7 @@ struct Grids {
   std::array<bool, kEffects> fine{};
   std::array<double, kStribeckSpeeds> stribeck_mps{kStribeckMps};  ///< each twice the one before
   std::array<double, kBumpGaps> bump_gap{kBumpGap};
+  double kink{0.0};  ///< where a spring that differs by direction bends; the others are lengths
   std::array<double, kDahlDistances> dahl_distance{kDahlDistance};
   std::array<double, kBacklashGaps> backlash_gap{kBacklashGap};
   std::array<double, kRelaxations> relaxation_s{kRelaxationS};
@@ -38,6 +42,11 @@ struct Grids {
 /// The mode of a step, between the points of its grid.
 [[nodiscard]] PitchShape pitch_of(const Step& step, const Grids& grids) noexcept;
 [[nodiscard]] FlexibleShape flexible_of(const Step& step, const Grids& grids) noexcept;
+
+/// A stop on one side that stands near the middle as a spring that differs by direction, which
+/// bends where the truck hangs at rest, and not at the mean of its motion. False: the first effect
+/// is none.
+bool as_kink(Explanation& explanation) noexcept;
 
 /// The grids of an explanation with those of its effects drawn together around what was found, the
 /// more the higher `round` is, from 0. False: none of its effects has a grid.

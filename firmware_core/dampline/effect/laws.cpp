@@ -65,7 +65,7 @@ void Laws::friction(const Point& p, LawValues& out) const noexcept {
 void Laws::stiffness(double y, LawValues& out) const noexcept {
   out[kSquare] = single(y * y);
   out[kCube] = single(y * y * y);
-  out[kMagnitude] = single(std::abs(y));
+  out[kMagnitude] = single(std::abs(y - grids_.kink * grids_.scale_m));
   for (std::size_t i = 0; i < kBumpGaps; ++i) {
     const double gap_m = grids_.bump_gap[i] * grids_.scale_m;
     out[kBumpUp + at(i)] = single(std::max(y - gap_m, 0.0));

@@ -20,7 +20,7 @@ constexpr double kSkewBesideMemoryGain = 0.065;
 constexpr double kLookalikeGain = 0.06;
 constexpr double kFrameBesideBacklashGain = 0.20;
 constexpr double kRateBesideBacklashGain = 0.10;  // of what depends on speed or time
-constexpr double kKinkWithin = 1.0;               // rms of y
+constexpr double kMemoryBesideKinkGain = 0.10;
 constexpr double kProductGain = 0.15;         // of springs beside two laws whose product is missing
 constexpr double kGainBesideSkewGain = 0.10;  // of the same channel
 constexpr double kLaterT = 3.5;
@@ -67,6 +67,8 @@ double gain_beside(const Candidate& beside, const Candidate& candidate) noexcept
     return kLookalikeGain;
   if (is_bent_spring(known) && is_even_spring(effect)) return kLaterMemoryGain;
   if (is_even_spring(known) && is_bent_spring(effect)) return kLookalikeGain;
+  // Where its kink is moves with the size of the motion.
+  if (is_even_spring(known) && has_memory(effect)) return kMemoryBesideKinkGain;
   if (has_memory(effect)) return kLaterMemoryGain;
   if (known == Effect::kUnmodelledMode && effect == Effect::kGainError) return kLaterMemoryGain;
   if (!has_memory(known)) return kLaterGain;
