@@ -122,9 +122,10 @@ std::vector<Eigen::VectorXd> forces_at(Model model, std::vector<Series> records,
     columns.push_back(model.columns[c]);
     theta.push_back(model.fit.theta[static_cast<Eigen::Index>(c)]);
   }
+  const Eigen::VectorXd coefficients = vector_of(theta);
   std::vector<Eigen::VectorXd> out;
   for (const Equations& e : equations_of(columns, records, is_filtered(model.columns)))
-    out.emplace_back(e.values.leftCols(e.values.cols() - 1) * vector_of(theta));
+    out.emplace_back(e.values.leftCols(coefficients.size()) * coefficients);
   return out;
 }
 

@@ -109,10 +109,10 @@ Regression::Regression(const std::vector<Equations>& records) : records_{records
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Eigen::MatrixXd& values = records[r].values;
     each_of_values(values.size(), parts, [&](std::size_t p) {
-      const auto place_of = [&](std::size_t part) {
+      const auto first_row_of = [&](std::size_t part) {
         return values.rows() * static_cast<Eigen::Index>(part) / static_cast<Eigen::Index>(parts);
       };
-      const auto block = values.middleRows(place_of(p), place_of(p + 1) - place_of(p));
+      const auto block = values.middleRows(first_row_of(p), first_row_of(p + 1) - first_row_of(p));
       Block out{Eigen::MatrixXd::Zero(block.cols(), block.cols()), r, r, 2 * p < parts};
       out.products.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose(), records[r].weight);
       out.products.triangularView<Eigen::StrictlyUpper>() = out.products.transpose();
