@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <string>
 #include <utility>
@@ -180,38 +181,84 @@ inline void low_pass(double corner_hz, Signal& signal) {
 
 }  // namespace plain
 
-/// A record as CSV.
-inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sensors,
+/// Of frame, wheelset 1 and wheelset 2, as sampled, m/s^2; not a number: missing.
+using PlainRows = std::array<std::vector<double>, 3>;
+
+/// What is wrong with the sensors or with their transport. What is empty is sound.
+struct PlainFault {
+  /// A channel's sample is taken so much later, s.
+  std::function<double(std::size_t channel, double time_s)> late_s;
+  std::function<void(PlainRows& rows)> analogue;  ///< before the converter
+  std::function<void(PlainRows& rows)> digital;   ///< behind it
+};
+
+/// What the sensors see, finely sampled, and the numbers that noise is drawn from.
+struct PlainMotion {
+  std::array<plain::Signal, 3> seen;
+  std::mt19937_64 random;
+};
+
+inline PlainMotion plain_motion(const PlainTruck& truck, const PlainSensors& sensors,
                                 double length_s, std::uint64_t seed) {
   using namespace plain;
-  std::mt19937_64 random{seed};
+  PlainMotion motion{{}, std::mt19937_64{seed}};
+  std::array<Signal, 3>& seen = motion.seen;
   const auto lag = static_cast<std::size_t>(kWheelbaseM / truck.speed_mps * kFineHz);
   const auto count = static_cast<std::size_t>(length_s * kFineHz);
-  const Signal rail = road(count + lag, truck.speed_mps, random);
-  std::array<Signal, 3> seen;
+  const Signal rail = road(count + lag, truck.speed_mps, motion.random);
   seen[1].assign(rail.begin() + static_cast<std::ptrdiff_t>(lag), rail.end());
   seen[2].assign(rail.begin(), rail.begin() + static_cast<std::ptrdiff_t>(count));
   seen[0] = frame(truck, seen[1], seen[2]);
   misplace(truck, sensors, seed, seen);
   if (sensors.corner_hz > 0.0)
     for (Signal& each : seen) low_pass(sensors.corner_hz, each);
+  return motion;
+}
+
+/// Of a record of this length. Draws from a copy of the motion's numbers.
+inline PlainRows plain_rows(const PlainMotion& motion, const PlainSensors& sensors, double length_s,
+                            const PlainFault& fault = {}) {
+  std::mt19937_64 random = motion.random;
   std::normal_distribution<double> normal;
-  std::string text = "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
+  const auto last = static_cast<double>(motion.seen[0].size() - 1);
   const auto samples = static_cast<std::size_t>(length_s * sensors.rate_hz);
+  PlainRows rows;
+  for (std::vector<double>& row : rows) row.resize(samples);
   for (std::size_t i = 0; i < samples; ++i) {
     const double time_s = static_cast<double>(i) / sensors.rate_hz;
-    text += fmt::format("{:.7f}", time_s);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double at = kFineHz * (time_s + sensors.late_s[c] + sensors.jitter_s * normal(random));
-      const auto place =
-          static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count - 1)));
-      const double step = (c == 0 ? 20.0 : 120.0) / std::exp2(sensors.bits);
-      const double value = seen[c][place] + 0.1 + sensors.noise_mps2 * normal(random);
-      text += fmt::format(",{:.6g}", step * std::round(value / step));
+      const double late_s = sensors.late_s[c] + (fault.late_s ? fault.late_s(c, time_s) : 0.0);
+      const double at = plain::kFineHz * (time_s + late_s + sensors.jitter_s * normal(random));
+      const auto place = static_cast<std::size_t>(std::clamp(at, 0.0, last));
+      rows[c][i] = motion.seen[c][place] + 0.1 + sensors.noise_mps2 * normal(random);
     }
+  }
+  if (fault.analogue) fault.analogue(rows);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double step = (c == 0 ? 20.0 : 120.0) / std::exp2(sensors.bits);
+    for (double& value : rows[c]) value = step * std::round(value / step);
+  }
+  if (fault.digital) fault.digital(rows);
+  return rows;
+}
+
+/// As CSV; the cell of what is missing is empty.
+inline std::string plain_text(const PlainRows& rows, double rate_hz) {
+  std::string text = "time_s,frame_accel_mps2,wheelset1_accel_mps2,wheelset2_accel_mps2\n";
+  for (std::size_t i = 0; i < rows[0].size(); ++i) {
+    text += fmt::format("{:.7f}", static_cast<double>(i) / rate_hz);
+    for (const std::vector<double>& row : rows)
+      text += std::isnan(row[i]) ? "," : fmt::format(",{:.6g}", row[i]);
     text += '\n';
   }
   return text;
+}
+
+/// A record as CSV.
+inline std::string plain_record(const PlainTruck& truck, const PlainSensors& sensors,
+                                double length_s, std::uint64_t seed) {
+  const PlainMotion motion = plain_motion(truck, sensors, length_s, seed);
+  return plain_text(plain_rows(motion, sensors, length_s), sensors.rate_hz);
 }
 
 /// Told of mass, rate and low pass.

@@ -170,9 +170,9 @@ class Walk {
   explicit Walk(const RepeatWatch::Codes& moves) : moves_{moves} {}
   bool go(RepeatWatch& watch) {
     for (std::size_t c = 0; c < kChannels; ++c) at_[c] += moves_[c];
-    return watch.update(at_);
+    return watch.update(0, at_);
   }
-  bool hold(RepeatWatch& watch) const { return watch.update(at_); }
+  bool hold(RepeatWatch& watch) const { return watch.update(0, at_); }
 
  private:
   RepeatWatch::Codes at_{};
@@ -180,7 +180,7 @@ class Walk {
 };
 
 TEST(RepeatWatch, AllowsEightAndFindsTheNinth) {
-  RepeatWatch watch;
+  RepeatWatch watch{20};
   Walk walk{{2, -2, 2}};
   for (int i = 0; i < 9; ++i) {
     EXPECT_FALSE(watch.found()) << i;
@@ -197,7 +197,7 @@ TEST(RepeatWatch, AllowsEightAndFindsTheNinth) {
 }
 
 TEST(RepeatWatch, SaysNothingWhereTheCarHardlyMoves) {
-  RepeatWatch watch;
+  RepeatWatch watch{20};
   Walk slow{{2, -2, 1}};
   for (int i = 0; i < 90; ++i) {
     static_cast<void>(slow.go(watch));
@@ -207,26 +207,26 @@ TEST(RepeatWatch, SaysNothingWhereTheCarHardlyMoves) {
 }
 
 TEST(RepeatWatch, NeedsTwoSamplesBefore) {
-  RepeatWatch watch;
-  EXPECT_FALSE(watch.update({9, 9, 9}));
-  EXPECT_FALSE(watch.update({1, 1, 1}));
-  EXPECT_TRUE(watch.update({1, 1, 1}));
+  RepeatWatch watch{20};
+  EXPECT_FALSE(watch.update(0, {9, 9, 9}));
+  EXPECT_FALSE(watch.update(0, {1, 1, 1}));
+  EXPECT_TRUE(watch.update(0, {1, 1, 1}));
   watch.restart();
-  EXPECT_FALSE(watch.update({1, 1, 1}));
-  EXPECT_FALSE(watch.update({9, 9, 9}));
-  EXPECT_FALSE(watch.update({1, 1, 1})) << "that of the sample before the last";
+  EXPECT_FALSE(watch.update(0, {1, 1, 1}));
+  EXPECT_FALSE(watch.update(0, {9, 9, 9}));
+  EXPECT_FALSE(watch.update(0, {1, 1, 1})) << "that of the sample before the last";
   EXPECT_EQ(watch.excess(), 0.0);
   watch.restart();
-  EXPECT_FALSE(watch.update({9, 9, 9}));
-  EXPECT_FALSE(watch.update({9, 9, 9})) << "whether it moved is not known";
+  EXPECT_FALSE(watch.update(0, {9, 9, 9}));
+  EXPECT_FALSE(watch.update(0, {9, 9, 9})) << "whether it moved is not known";
 }
 
 // To and fro: each sample is that before the last one, which is chance.
 TEST(RepeatWatch, TakesOffWhatChanceExplains) {
-  RepeatWatch watch;
-  for (int i = 0; i < 12; ++i) static_cast<void>(watch.update({i % 2 * 7, i % 2 * 7, 0}));
+  RepeatWatch watch{20};
+  for (int i = 0; i < 12; ++i) static_cast<void>(watch.update(0, {i % 2 * 7, i % 2 * 7, 0}));
   EXPECT_EQ(watch.excess(), -10.0);
-  RepeatWatch some;
+  RepeatWatch some{20};
   Walk walk{{2, -2, 2}};
   const auto repeat = [&](int count) {
     for (int i = 0; i < count; ++i) {
@@ -234,9 +234,10 @@ TEST(RepeatWatch, TakesOffWhatChanceExplains) {
       static_cast<void>(walk.hold(some));
     }
   };
-  static_cast<void>(some.update({100, 100, 100}));
-  static_cast<void>(some.update({200, 200, 200}));
-  static_cast<void>(some.update({100, 100, 100}));  // one by chance: 5 + 4 sqrt(2) + 5 are allowed
+  static_cast<void>(some.update(0, {100, 100, 100}));
+  static_cast<void>(some.update(0, {200, 200, 200}));
+  static_cast<void>(
+      some.update(0, {100, 100, 100}));  // one by chance: 5 + 4 sqrt(2) + 5 are allowed
   repeat(15);
   EXPECT_FALSE(some.found());
   repeat(1);
@@ -246,16 +247,69 @@ TEST(RepeatWatch, TakesOffWhatChanceExplains) {
 
 // Each channel holds its code for half of the time by itself: an eighth of the samples repeats.
 TEST(RepeatWatch, ExpectsRepetitionsOfChannelsThatAreSlowByThemselves) {
-  RepeatWatch watch;
+  RepeatWatch watch{20};
   RepeatWatch::Codes codes{};
   int repeats = 0;
   for (int i = 0; i < 800; ++i) {
     for (std::size_t c = 0; c < kChannels; ++c)
-      if ((i >> c & 1) == 0) codes[c] += 9;
-    repeats += watch.update(codes) ? 1 : 0;
+      if ((i >> c & 1) == 0) codes[c] += 7;
+    repeats += watch.update(i, codes) ? 1 : 0;
   }
   EXPECT_GE(repeats, 99);
   EXPECT_FALSE(watch.found()) << "9 + 2 (100 - 2) are allowed";
+}
+
+// After a move of 30 codes; the fourth is told at once, one alone and much later is not.
+TEST(RepeatWatch, FindsThreeCloseTogetherAfterFastMoves) {
+  RepeatWatch watch{20};
+  std::int64_t tick = 0;
+  std::int64_t code = 0;
+  const auto go = [&](int samples) {
+    for (int i = 0; i < samples; ++i)
+      static_cast<void>(watch.update(tick++, {code += 10, 10 - code, code / 2}));
+  };
+  const auto hold = [&] { static_cast<void>(watch.update(tick++, {code, 10 - code, code / 2})); };
+  go(10);
+  hold();
+  go(25);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(watch.found()) << i << ": the first was too long before";
+    hold();
+    go(19);
+  }
+  EXPECT_TRUE(watch.found());
+  EXPECT_EQ(watch.excess(), 3.0);
+  EXPECT_EQ(watch.first_tick(), 36);
+  watch.clear();
+  EXPECT_FALSE(watch.found());
+  hold();
+  EXPECT_TRUE(watch.found());
+  EXPECT_EQ(watch.first_tick(), 96);
+  watch.clear();
+  go(30);
+  hold();
+  EXPECT_FALSE(watch.found());
+}
+
+// A car that brakes: what moved fast before says nothing of how often slow codes repeat.
+TEST(RepeatWatch, CountsChanceBlockByBlock) {
+  RepeatWatch watch{20};
+  RepeatWatch::Codes codes{};
+  int i = 0;
+  for (int block = 0; block < 20; ++block) {
+    for (int k = 0; k < 400; ++k) {
+      for (std::int64_t& code : codes) code += 9;
+      static_cast<void>(watch.update(i++, codes));
+    }
+    watch.forget();
+  }
+  for (int k = 0; k < 400; ++k, ++i) {
+    for (std::size_t c = 0; c < kChannels; ++c)
+      if ((i >> c & 1) == 0) codes[c] += 7;
+    static_cast<void>(watch.update(i, codes));
+  }
+  EXPECT_GT(watch.excess(), 45.0);
+  EXPECT_FALSE(watch.found()) << "50 of 400 by chance: 9 + 2 (50 - 2) are allowed";
 }
 
 constexpr std::int64_t kSecondSamples = 10;

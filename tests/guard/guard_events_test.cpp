@@ -271,7 +271,7 @@ TEST(GuardCodes, RepeatedSamplesAreTheirExcess) {
   const Fault* const fault = codes.find(FaultKind::kRepeatedSamples);
   ASSERT_NE(fault, nullptr);
   EXPECT_EQ(fault->channel, FaultChannel::kAll);
-  EXPECT_EQ(fault->size, 9.0);
+  EXPECT_EQ(fault->size, 11.0);
   EXPECT_EQ(fault->time_s, 600 / 300.0) << "the first of them";
 }
 
@@ -285,10 +285,10 @@ TEST(GuardCodes, RepeatedSamplesAreToldAgainWhereTheyCameAgain) {
   });
   const Fault* const fault = codes.find(FaultKind::kRepeatedSamples);
   ASSERT_NE(fault, nullptr);
-  EXPECT_EQ(fault->count, 2U);
+  EXPECT_EQ(fault->count, 14U) << "three together, and each of six more";
   EXPECT_EQ(fault->size, 18.0);
   EXPECT_EQ(fault->time_s, 600 / 300.0);
-  EXPECT_EQ(fault->last_s, 6600 / 300.0);
+  EXPECT_EQ(fault->last_s, 7400 / 300.0);
 }
 
 // Five seconds on either side: a level that was clipped or held is none.

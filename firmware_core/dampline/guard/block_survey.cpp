@@ -22,6 +22,7 @@ constexpr double kHannPower = 0.375;  // mean square of the window
 constexpr double kCoherent = 0.4;
 constexpr std::size_t kButterfliesSlice = 96;
 constexpr double kMostWeight = 50.0;
+constexpr int kAtOnceSamples = 2;      // samples
 constexpr double kShakenHz = 85.0;     // below, wheelsets shake most, and not as 1 / f^2
 constexpr double kLeastFolded = 0.45;  // corner, of the rate: then little of a slope is left
 
@@ -296,12 +297,16 @@ void BlockSurvey::find_peaks() noexcept {
   lags_[0].find_peak(second);
   constexpr auto kMost = static_cast<int>(PairSpectra::kMostDelay) - 4;
   double best = 0.0;
+  double at_once = 0.0;
+  for (int lag = -kAtOnceSamples; lag <= kAtOnceSamples; ++lag)
+    at_once = std::max(at_once, std::abs(first(lag)));
   for (int lag = -kMost; lag <= kMost; ++lag) {
     if (std::abs(first(lag)) <= std::abs(best)) continue;
     best = first(lag);
     figures_.match_delay = lag;
   }
   figures_.match = best / (2.0 * shared_.bins());
+  figures_.at_once = at_once / (2.0 * shared_.bins());
 }
 
 void BlockSurvey::phase(std::size_t k) noexcept {

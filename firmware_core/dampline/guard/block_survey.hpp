@@ -76,6 +76,7 @@ struct BlockFigures {
   double coherent_share{0.0};  ///< of the bins of 4-90 Hz: the wheelsets' coherence is above 0.4
   double match{0.0};        ///< signed peak of the whitened correlation of the wheelsets, 1 at most
   int match_delay{0};       ///< its place: samples by which wheelset 2 is later
+  double at_once{0.0};      ///< the largest magnitude of that correlation within two samples of 0
   double delay_s{0.0};      ///< of wheelset 2, where it is coherent and aligned
   double log_gain{0.0};     ///< ln of the gain of wheelset 1 over wheelset 2, 4-90 Hz, mean of bins
   double frame_power{0.0};  ///< power of the frame over that of a wheelset, 40-100 Hz

@@ -108,14 +108,19 @@ class CodeWatch {
 
 /// Counts samples that say in all channels what the one before said. Without a counter that is how
 /// a repeated sample looks; by chance it happens too, as often as with the sample before that.
-/// Where the car hardly moves it says nothing.
+/// Where the car hardly moves it says nothing; after a fast move chance has no part in it, and a
+/// few close together are enough.
 class RepeatWatch {
  public:
   using Codes = std::array<std::int64_t, kChannels>;
+  /// `together_samples`: repetitions that close belong together.
+  explicit RepeatWatch(std::int64_t together_samples) noexcept
+      : together_samples_{together_samples} {}
   /// True when the codes are those of the sample before.
-  bool update(const Codes& codes) noexcept {
-    const bool same = seen_ >= 2 && codes == last_[0] && moved();
-    const bool chance = seen_ >= 2 && codes == last_[1] && moved();
+  bool update(std::int64_t tick, const Codes& codes) noexcept {
+    const bool same = seen_ >= 2 && codes == last_[0] && moved(kMoves);
+    const bool chance = seen_ >= 2 && codes == last_[1] && moved(kMoves);
+    if (same) join(tick);
     if (seen_ >= 1) samples_ += 1.0;
     for (std::size_t c = 0; seen_ >= 1 && c < kChannels; ++c)
       if (codes[c] == last_[0][c]) alike_[c] += 1.0;
@@ -126,45 +131,82 @@ class RepeatWatch {
     if (seen_ < 2) ++seen_;
     return same;
   }
-  /// More than chance explains, with kAllowed on top.
+  /// More than chance explains, with kAllowed on top; or together after fast moves.
   [[nodiscard]] bool found() const noexcept {
-    return repeated_ >= kAllowed + 4.0 * std::sqrt(chance_ + 1.0) + kChance * chance_ +
-                            2.0 * std::max(by_chance() - kFewByChance, 0.0);
+    return is_together() || repeated_ >= kAllowed + 4.0 * std::sqrt(chance_ + 1.0) +
+                                             kChance * chance_ +
+                                             2.0 * std::max(by_chance() - kFewByChance, 0.0);
   }
-  [[nodiscard]] double excess() const noexcept { return repeated_ - chance_; }
+  [[nodiscard]] double excess() const noexcept {
+    return is_together() ? together_ : repeated_ - chance_;
+  }
   /// Once a block: what is long ago counts less, with a time constant of some 40 blocks.
   void forget() noexcept {
+    earlier_ = kKept * by_chance();
     repeated_ *= kKept;
     chance_ *= kKept;
-    samples_ *= kKept;
-    for (double& alike : alike_) alike *= kKept;
+    samples_ = 0.0;
+    alike_.fill(0.0);
   }
-  void clear() noexcept { repeated_ = chance_ = 0.0; }
+  /// The first of them; -1: there is none.
+  [[nodiscard]] std::int64_t first_tick() const noexcept {
+    return is_together() ? first_together_ : first_tick_;
+  }
+  /// What was found is reported; more that is together with it is found at once.
+  void clear() noexcept {
+    known_ = known_ || together_ > 0.0;
+    repeated_ = chance_ = together_ = 0.0;
+    first_tick_ = first_together_ = -1;
+  }
   void restart() noexcept { seen_ = 0; }
 
  private:
+  [[nodiscard]] bool is_together() const noexcept {
+    return together_ >= (known_ ? 1.0 : kTogether);
+  }
+  void join(std::int64_t tick) noexcept {
+    if (tick - last_tick_ > together_samples_) {
+      together_ = 0.0;
+      known_ = false;
+      first_together_ = -1;
+    }
+    if (first_together_ < 0) first_together_ = tick;
+    if (moved(kFastMoves)) together_ += 1.0;
+    if (first_tick_ < 0) first_tick_ = tick;
+    last_tick_ = tick;
+  }
   /// Before this sample.
-  [[nodiscard]] bool moved() const noexcept {
+  [[nodiscard]] bool moved(std::int64_t least) const noexcept {
     std::int64_t codes = 0;
     for (std::size_t c = 0; c < kChannels; ++c) codes += std::abs(last_[0][c] - last_[1][c]);
-    return codes >= kMoves;
+    return codes >= least;
   }
   /// Repetitions of all channels if each repeated its code by itself: slow motion, coarse steps.
+  /// Block by block, since a car that brakes moves otherwise before.
   [[nodiscard]] double by_chance() const noexcept {
     double count = samples_;
     for (const double alike : alike_) count *= alike / std::max(samples_, 1.0);
-    return count;
+    return earlier_ + count;
   }
   static constexpr std::int64_t kMoves = 6;  // codes, of all channels together
+  static constexpr std::int64_t kFastMoves = 24;
+  static constexpr double kTogether = 3.0;
   static constexpr double kAllowed = 5.0;
   static constexpr double kFewByChance = 2.0;  // 1.2 in the reference runs
   static constexpr double kChance = 5.0;  // of smooth motion the nearer sample is the more alike
   static constexpr double kKept = 0.975;
+  std::int64_t together_samples_;
   std::array<Codes, 2> last_{};
   int seen_{0};
+  double together_{0.0};  // after fast moves, and not yet reported
+  bool known_{false};     // some of them are
+  std::int64_t first_together_{-1};
+  std::int64_t last_tick_{0};
+  std::int64_t first_tick_{-1};
   double repeated_{0.0};
   double chance_{0.0};
-  double samples_{0.0};
+  double earlier_{0.0};  // by chance, in the blocks before
+  double samples_{0.0};  // of this block
   std::array<double, kChannels> alike_{};
 };
 

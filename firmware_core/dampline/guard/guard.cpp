@@ -59,6 +59,7 @@ Guard::Guard(const GuardConfig& config) noexcept
       log_{config.sample_rate_hz},
       spikes_{SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}, SpikeWatch{ticks_of(2.0)}},
       levels_{LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}, LevelWatch{ticks_of(1.0)}},
+      repeats_{ticks_of(2.5)},
       spectral_{config},
       wheelsets_{config.sample_rate_hz} {
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -149,15 +150,7 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
   watch_full_scale(sample);
   watch_runs(sample, codes);
   watch_twins(codes);
-  if (repeats_.update(codes)) {
-    if (first_repeat_ < 0) first_repeat_ = sample.tick;
-    if (repeats_.found()) {
-      log_.report(FaultKind::kRepeatedSamples, FaultChannel::kAll, log_.seconds(first_repeat_),
-                  repeats_.excess());
-      repeats_.clear();
-      first_repeat_ = -1;
-    }
-  }
+  if (repeats_.update(sample.tick, codes)) take_repeat(sample.tick);
   for (std::size_t c = 0; c < kChannels; ++c) {
     if (!is_bridged(sample, c)) codes_[c].update(sample.tick, codes[c]);
     spikes_[c].update(sample.tick, codes[c]);
@@ -166,6 +159,20 @@ void Guard::watch_codes(const Sample& sample, const Codes& codes) noexcept {
       take_jump(c, jump, sample.tick);
   }
   if (jumps_wait_) settle_jumps(sample.tick);
+}
+
+// The wheelsets are out of step until the wheelset behind has repeated it, too.
+void Guard::take_repeat(std::int64_t tick) noexcept {
+  if (!repeats_.found()) return;
+  const std::int64_t first = repeats_.first_tick();
+  log_.report(FaultKind::kRepeatedSamples, FaultChannel::kAll, log_.seconds(first),
+              repeats_.excess());
+  const auto delay =
+      static_cast<std::int64_t>(std::abs(spectral_.delay_s()) * config_.sample_rate_hz);
+  if (tick - first < block_ticks_)
+    log_.spoil(FaultKind::kRepeatedSamples, FaultChannel::kAll, first, tick + delay);
+  wheelsets_.strike(tick);
+  repeats_.clear();
 }
 
 void Guard::take_jump(std::size_t channel, const LevelJump& jump, std::int64_t tick) noexcept {

@@ -118,6 +118,7 @@ class Guard {
   void watch_codes(const Sample& sample, const Codes& codes) noexcept;
   void watch_runs(const Sample& sample, const Codes& codes) noexcept;
   void watch_contact(std::size_t channel, std::int64_t code) noexcept;
+  void take_repeat(std::int64_t tick) noexcept;
   void take_jump(std::size_t channel, const LevelJump& jump, std::int64_t tick) noexcept;
   void settle_jumps(std::int64_t tick) noexcept;
   void report_jump(std::size_t channel) noexcept;
@@ -165,7 +166,6 @@ class Guard {
   std::array<WrongSample, 16> wrong_{};
   std::size_t wrong_pushed_{0};
   std::size_t wrong_popped_{0};
-  std::int64_t first_repeat_{-1};
   bool any_{false};
   std::int64_t no_numbers_{0};  // samples since the last one that came with a value
   Sample last_{};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dampline/sample/hole_bridge.hpp"
 
@@ -12,7 +13,10 @@ namespace {
 constexpr double kMovingMps2 = 0.3;  // rms of the wheelsets below which nothing is judged
 constexpr double kMatch = 0.35;      // of the wheelsets' whitened correlation
 constexpr double kSwapped = 1.0;     // fast power of the frame over a wheelset's; clean 0.02
-constexpr int kBlocksInARow = 2;     // before a lasting fault is named
+// Of the match: a frame among the wheelsets moves with the other one at once, too. Wheelsets that
+// roll slowly, so that friction holds the frame, do not, and the frame has as much power as they.
+constexpr double kAtOnce = 0.5;
+constexpr int kBlocksInARow = 2;             // before a lasting fault is named
 constexpr std::uint32_t kFirstSegments = 3;  // of the block that finds the delay
 constexpr int kAligned = 2;                  // samples
 constexpr double kSteadyS = 100e-6;          // change of the delay in a block
@@ -56,7 +60,7 @@ void SpectralGuard::restart() noexcept {
   spectra_.restart();
   timing_.restart();
   survey_.forget_lag();
-  aligned_ = has_delay_ = steady_ = false;
+  aligned_ = has_delay_ = usable_ = steady_ = false;
 }
 
 void SpectralGuard::advance(FaultLog& log, GuardInputs& inputs) noexcept {
@@ -100,7 +104,10 @@ void SpectralGuard::judge(FaultLog& log, GuardInputs& inputs) noexcept {
       next_ = Test::kTiming;
       return;
     case Test::kTiming:
-      if (timing_.add_block(survey_.figures(), usable_, inputs)) survey_.forget_lag();
+      if (timing_.add_block(survey_.figures(), usable_, inputs)) {
+        survey_.forget_lag();
+        gain_.clear();  // it scatters otherwise
+      }
       timing_.judge(log, inputs);
       next_ = Test::kGain;
       return;
@@ -143,7 +150,8 @@ bool SpectralGuard::in_order(FaultLog& log) noexcept {
     blocks = now ? blocks + 1 : 0;
     return blocks >= kBlocksInARow;
   };
-  const bool swapped = block.frame_power > kSwapped;
+  const bool swapped =
+      block.frame_power > kSwapped && block.at_once > kAtOnce * std::abs(block.match);
   if (lasting(swapped_blocks_, swapped)) {
     log.report(FaultKind::kSwappedChannels, FaultChannel::kAll, time_s, block.frame_power);
   }
@@ -172,8 +180,9 @@ void SpectralGuard::align() noexcept {
   const BlockFigures& block = survey_.figures();
   const bool matches = block.match > kMatch;
   const bool side_by_side = matches && std::abs(block.match_delay - block.delay) <= kAligned;
-  usable_ = aligned_ && side_by_side && block.coherent_share > 0.5;
-  steady_ = usable_ && has_delay_ && std::abs(block.delay_s - delay_s_) < kSteadyS;
+  const bool followed =
+      std::exchange(usable_, aligned_ && side_by_side && block.coherent_share > 0.5);
+  steady_ = followed && usable_ && has_delay_ && std::abs(block.delay_s - delay_s_) < kSteadyS;
   if (usable_) {
     delay_s_ = block.delay_s;
     has_delay_ = true;
@@ -303,7 +312,7 @@ bool SpectralGuard::rises_with(double noise, std::size_t block) const noexcept {
 }
 
 void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
-  const BlockSeries& series = noise_[which];
+  const BlockSeries& series = which == 0 ? noise_[0] : white_;
   if (series.size() < kBurstBlocks) return;
   const double declared = which == 0 ? noise_limit(0) : noise_limit(1) + noise_limit(2);
   const double usual = series.median();
