@@ -50,6 +50,7 @@ PARTS = {
     "diagnosis_pairs": "Two missing effects at once",
     "unseen": "Trucks of any kind",
     "guards": "Faults",
+    "field": "Faults on other trucks",
     "sensors": "Coarse, noisy, slow and unfiltered sensors",
     "places": "Sensors that sit elsewhere",
     "combinations": "Faults beside effects, faults and changed parameters",

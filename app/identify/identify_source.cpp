@@ -13,6 +13,7 @@
 
 #include "app/beside.hpp"
 #include "app/error.hpp"
+#include "app/identify/low_pass.hpp"
 #include "app/record/source_kind.hpp"
 #include "app/rig/identify.hpp"
 #include "app/rig/record.hpp"
@@ -94,11 +95,11 @@ Identified identify_rig_file(const Config& config, const SourceOptions& source,
 }  // namespace
 
 Identified identify_truck(const Config& config, const SourceOptions& source, SourceKind kind,
-                          bool show_progress) {
+                          bool show_progress, double most_s) {
   static_cast<void>(estimator_config(config));  // wrong settings before a wrong source
   const auto feed = open_feed(config, source, kind);
   TruckRun<kIdentifyParts> run{config, feed->signals()};
-  pump(*feed, source, show_progress, run);
+  pump(*feed, source, show_progress, run, most_s);
   Identified out;
   out.result = run.finish(rate_of(*feed, run), source.path);
   feed->describe(run.frames(), out.result);
@@ -123,6 +124,7 @@ Identified identify_source(const Config& config, const SourceOptions& source, So
   Identified out = kind == SourceKind::kRigRows
                        ? identify_rig_file(config, source, show_progress)
                        : identify_truck(config, source, kind, show_progress);
+  if (is_file && kind != SourceKind::kRigRows) look_for_low_pass(config, source, out.result);
   out.inputs.insert(out.inputs.begin(), record.get());
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,17 +79,19 @@ class PipeEnd {
   int empty_{0};    // in a row
 };
 
-/// Everything of `feed` through `run`. Throws RunError when the record holds no complete sample.
+/// What `feed` has, at least its first `most_s`, through `run`. Throws RunError when the record
+/// holds no complete sample.
 template <Parts kParts>
-void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
-          TruckRun<kParts>& run) {
+void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, TruckRun<kParts>& run,
+          double most_s = std::numeric_limits<double>::infinity()) {
   Progress progress{show_progress};
   PipeEnd end{source.path};
   for (bool more = true; more;) {
     const Batch batch = feed.read();
     for (const CanFrame& frame : batch.frames) run.take(frame);
     for (const Sample& sample : batch.samples) run.take(sample);
-    more = batch.more && !end.reached(batch.frames.empty() && batch.samples.empty());
+    more = batch.more && !end.reached(batch.frames.empty() && batch.samples.empty()) &&
+           run.time_s() < most_s;
     if (!progress.due()) continue;
     progress.show(feed.share_read(), run.time_s(), run.state_text());
   }
@@ -98,9 +101,11 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress,
                                feed.explain_emptiness(run.frames()))};
 }
 
-/// A truck's record alone, without its checksum. Throws RunError or UsageError.
+/// A truck's record alone, without its checksum; no more than its first `most_s`. Throws RunError
+/// or UsageError.
 [[nodiscard]] Identified identify_truck(const Config& config, const SourceOptions& source,
-                                        SourceKind kind, bool show_progress);
+                                        SourceKind kind, bool show_progress,
+                                        double most_s = std::numeric_limits<double>::infinity());
 
 /// Opens a record, live interfaces excepted, and identifies it. Throws RunError or UsageError;
 /// there is no partial result.

@@ -211,6 +211,14 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
   out.lasting = effect::forbids_naming(view) || std::any_of(list.begin(), list.end(), wrong_rate);
 }
 
+void add_fault(FaultKind kind, FaultChannel channel, double size, RunResult& result) {
+  DataFaults& faults = result.faults;
+  if (!faults.list.empty()) std::erase(result.warnings, warning_of(faults));
+  faults.list.push_back({name_of(kind), name_of(channel), 0.0, 0.0, size, unit_of(kind), 1, {}});
+  faults.lasting = true;
+  result.warnings.push_back(warning_of(faults));
+}
+
 DriftFinding finding_of(const ParameterDrift& drift) {
   return {
       name_of(drift.parameter), drift.step, drift.time_s,

@@ -43,6 +43,9 @@ void describe_faults(const FaultView& view, const TruckRecord& record, double no
 /// Precondition: drift.found.
 [[nodiscard]] DriftFinding finding_of(const ParameterDrift& drift);
 
+/// A fault of the whole record that is found afterwards, and that changes the numbers.
+void add_fault(FaultKind kind, FaultChannel channel, double size, RunResult& result);
+
 /// End of the record: the same with the seconds that each fault spoils and a parameter that
 /// changed, with a warning for the reader where there is any of them. `view`: the guard's.
 void describe_faults_of_all(const Guard& guard, const FaultView& view, const ParameterDrift& drift,

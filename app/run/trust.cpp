@@ -187,7 +187,7 @@ void judge_fit(const Explaining* explaining, const RunResult& result, Reasons& o
                   explaining == nullptr ? " `dampline explain` finds out what it lacks." : ""));
 }
 
-void judge_terms(const RunResult& result, Reasons& out) {
+void judge_terms(const Explaining* explaining, const RunResult& result, Reasons& out) {
   if (!result.lacking.empty())
     out.emplace_back(Trust::kModelIncomplete,
                      fmt::format("The model lacks {}: the law with it stands in the explanation.",
@@ -195,9 +195,9 @@ void judge_terms(const RunResult& result, Reasons& out) {
   else if (result.faults.drift)
     out.emplace_back(
         Trust::kModelIncomplete,
-        fmt::format("A parameter is not constant: {} changed by {:+.1f} %. `dampline "
-                    "explain` tells when.",
-                    result.faults.drift->parameter, result.faults.drift->change_percent.value));
+        fmt::format("A parameter is not constant: {} changed by {:+.1f} %.{}",
+                    result.faults.drift->parameter, result.faults.drift->change_percent.value,
+                    explaining == nullptr ? " `dampline explain` tells when." : ""));
 }
 
 void judge_speed(const Explaining* explaining, const RunResult& result, Reasons& out) {
@@ -257,7 +257,7 @@ void judge_trust(const Explaining* explaining, RunResult& result) {
   judge_width(result, reasons);
   judge_fall(result, reasons);
   judge_fit(explaining, result, reasons);
-  if (explaining == nullptr) judge_terms(result, reasons);
+  if (explaining == nullptr || explaining->unsteady) judge_terms(explaining, result, reasons);
   judge_speed(explaining, result, reasons);
   result.trust = Trust::kTrusted;
   result.trust_reasons.clear();

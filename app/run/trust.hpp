@@ -18,6 +18,7 @@ struct Explaining {
   bool incomplete{false};  ///< something real is left
   bool withheld{false};    ///< faults of the data forbid to name an effect
   bool impossible{false};  ///< friction or spring come out negative: no law of a truck
+  bool unsteady{false};    ///< a parameter changed beside what explains
 };
 
 /// Of the wheelsets, rms: a running car shakes more, in g it seems to shake less.

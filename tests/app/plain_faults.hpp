@@ -19,6 +19,7 @@ namespace dampline::test {
 
 /// A record to be made: what is wrong with it, and what the program is told.
 struct FaultyRecord {
+  const PlainMotion& motion;
   PlainSensors sensors;
   PlainFault fault;
   app::Config config;
@@ -131,7 +132,7 @@ inline std::vector<PlainFaultCase> plain_value_faults(double length_s) {
        false,
        [](R& r) {
          const std::size_t c = r.any_channel();
-         const double most = full_scale_mps2(c) * r.between(0.1, 0.3);
+         const double most = exceeded(r.motion.seen[c], r.between(0.002, 0.08));
          r.fault.analogue = limit(c, most);
          if (r.config.input.range_mps2[c]) r.config.input.range_mps2[c] = most;
        }},
@@ -330,12 +331,10 @@ inline std::vector<PlainFaultCase> plain_timing_faults(double length_s) {
        [](R& r) {
          r.sensors.late_s = {0.0, 1.1e-3, 2.2e-3};
        }},
-      {"another low pass than declared",
+      {"a low pass higher than declared",
        {K::kWrongLowPass},
        false,
-       [](R& r) {
-         r.config.input.anti_alias.corner_hz = r.between(0.0, 1.0) < 0.5 ? 130.0 : 70.0;
-       }},
+       [](R& r) { r.config.input.anti_alias.corner_hz = r.between(60.0, 80.0); }},
   };
 }
 
@@ -343,7 +342,7 @@ inline std::vector<PlainFaultCase> plain_timing_faults(double length_s) {
 inline PlainExplained explained_with(const PlainTruck& truck, const PlainMotion& motion,
                                      const PlainFaultCase& fault, std::uint64_t seed,
                                      double length_s, bool all_declared) {
-  FaultyRecord record{{}, {}, plain_config(truck, {}), std::mt19937_64{seed}};
+  FaultyRecord record{motion, {}, {}, plain_config(truck, {}), std::mt19937_64{seed}};
   if (all_declared) {
     record.config.car.wheelbase_m = plain::kWheelbaseM;
     record.config.input.speed_mps = truck.speed_mps;

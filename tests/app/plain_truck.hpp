@@ -297,7 +297,7 @@ struct PlainExplained {
 /// What `explain` makes of a file.
 inline PlainExplained explained_from(const app::Config& config, const std::string& path) {
   app::Explained explained = app::explain_truck(config, {{path, false}, {}, false});
-  app::RunResult result = std::move(explained.identified);
+  app::RunResult result = explained.identified;
   app::Explanation explanation = app::conclude(explained, result);
   return {std::move(explanation), std::move(result)};
 }

@@ -121,6 +121,27 @@ INSTANTIATE_TEST_SUITE_P(Corners, WrongLowPassTest,
                                          Declared{"Unknown", 60.0, 0.0}),
                          [](const auto& declared) { return std::string{declared.param.name}; });
 
+/// `identify` would trust a level that is 1 to 4 % off.
+TEST(PlainSensorsLowPass, IsNamedByIdentifyWhereItWouldTrustTheLevel) {
+  const PlainTruck& truck = kPlainTrucks.back();
+  for (const Declared& c : {Declared{"too low", 100.0, 80.0}, Declared{"unknown", 80.0, 0.0},
+                            Declared{"right", 100.0, 100.0}, Declared{"above", 100.0, 0.0}}) {
+    const test::TemporaryFile file{
+        test::plain_record(truck, {.corner_hz = c.corner_hz}, 150.0, 9109)};
+    const Config config = test::plain_config(truck, {.corner_hz = c.declared_hz});
+    const RunResult result =
+        identify_source(config, {file.path(), false}, SourceKind::kTruckRows, false).result;
+    const bool is_other = c.corner_hz != 100.0 || c.declared_hz == 80.0;
+    EXPECT_EQ(result.trust, is_other ? Trust::kDataFaulty : Trust::kTrusted) << c.name;
+    ASSERT_EQ(result.faults.list.size(), is_other ? 1U : 0U) << c.name;
+    if (!is_other) continue;
+    EXPECT_EQ(result.faults.list[0].name, "wrong_low_pass") << c.name;
+    EXPECT_NEAR(result.faults.list[0].size, c.corner_hz, 0.08 * c.corner_hz) << c.name;
+    ASSERT_FALSE(result.warnings.empty()) << c.name;
+    EXPECT_NE(result.warnings.back().find("wrong_low_pass"), std::string::npos) << c.name;
+  }
+}
+
 struct Delays {
   const char* name;
   std::array<double, kChannels> late_s;  ///< taken so much later than the record says

@@ -98,6 +98,21 @@ TEST(TruckVerdict, CountsAParameterThatChangesAsAnEffect) {
   EXPECT_EQ(json.at("steps").at(0).at("note"), "like time_drift, law incomplete");
 }
 
+TEST(TruckVerdict, TrustsNoLawBesideWhichAParameterChanges) {
+  Explained explained;
+  effect::Explanation& e = explained.explanation;
+  e = explained_by_one_effect(0.3);
+  for (Estimate* each : {&e.base_coulomb_n, &e.final_coulomb_n}) *each = {8000.0, 20.0};
+  for (Estimate* each : {&e.base_stiffness_npm, &e.final_stiffness_npm}) *each = {5e6, 1e4};
+  const auto reasons = [&] {
+    return nlohmann::json::parse(to_json(explained)).at("trust_reasons").dump();
+  };
+  EXPECT_EQ(reasons().find("not constant"), std::string::npos);
+  explained.identified.faults.drift =
+      DriftFinding{"moving_mass", true, 80.0, 8.0, 0.03, {-6.0, 0.2}};
+  EXPECT_NE(reasons().find("moving_mass changed by -6.0 %"), std::string::npos);
+}
+
 // Of 0.2 before and a floor of 0.1 an effect must take a hundredth where 0.15 is left.
 TEST(TruckVerdict, TakesBackWhatTakesHardlyAnyOfTheExcess) {
   const auto held_back = [](double taken, double floor_nmse) {
@@ -109,7 +124,9 @@ TEST(TruckVerdict, TakesBackWhatTakesHardlyAnyOfTheExcess) {
   };
   EXPECT_TRUE(held_back(0.009, 0.1));
   EXPECT_FALSE(held_back(0.011, 0.1));
-  EXPECT_FALSE(held_back(0.009, 0.13)) << "no more is left than sensors make";
+  EXPECT_TRUE(held_back(0.003, 0.16)) << "1.23 times the floor, and a thirteenth of the excess";
+  EXPECT_FALSE(held_back(0.005, 0.16));
+  EXPECT_FALSE(held_back(0.001, 0.17)) << "no more is left than sensors make";
 }
 
 Explained seen_with(const Misplacement& misplacement, double left_nmse, double floor_nmse) {

@@ -171,6 +171,17 @@ TEST(Judgement, TakesNoFaultThatPassedForAnImpulsiveInput) {
   EXPECT_EQ(config.allowed, ExplainerConfig::all());
 }
 
+TEST(Judgement, NamesNoModeWhereMuchWasPutIn) {
+  for (const auto& [share, allowed] : {std::pair{0.04, true}, std::pair{0.06, false}}) {
+    FaultView faults;
+    faults.repairs.bridged.share = share;
+    ExplainerConfig config;
+    disallow_mimics(faults, config);
+    EXPECT_EQ(config.allowed[static_cast<std::size_t>(Effect::kUnmodelledMode)], allowed) << share;
+    EXPECT_FALSE(config.allowed[static_cast<std::size_t>(Effect::kImpulsiveInput)]) << share;
+  }
+}
+
 TEST(Judgement, TakesBackWhatWasAdded) {
   Explanation explanation = explained_by_one_effect(0.5);
   withhold_effects(explanation);

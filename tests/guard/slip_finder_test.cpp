@@ -102,8 +102,21 @@ TEST(SlipFinder, StandsOutByFourDeviations) {
 }
 
 TEST(SlipFinder, LeavesLittleMoreThanUsual) {
-  EXPECT_TRUE(ChunkFeed{}.finds({.fit = 1.0, .left = 4.4}));
-  EXPECT_FALSE(ChunkFeed{}.finds({.fit = 1.0, .left = 4.6}));
+  for (const auto& [left, finds] : {std::pair{4.4, true}, std::pair{4.6, false}}) {
+    ChunkFeed feed;
+    feed.sigma = 0.12;  // a fifteenth of the change is left
+    EXPECT_EQ(feed.finds({.fit = 1.0, .left = left}), finds) << left;
+  }
+}
+
+// Where the wheelsets are usually alike, the ends of a slip leave many times that: 5 % of the
+// change.
+TEST(SlipFinder, OrLittleOfTheChange) {
+  for (const auto& [sigma, finds] : {std::pair{0.0225, true}, std::pair{0.0235, false}}) {
+    ChunkFeed feed;
+    feed.sigma = sigma;
+    EXPECT_EQ(feed.finds({.fit = 1.0, .left = 25.0}), finds) << sigma;
+  }
 }
 
 TEST(SlipFinder, NeedsADelayOfTwoChunksAndAtMostTwentyFour) {

@@ -10,12 +10,12 @@
 #include <optional>
 
 #include "app/diagnosis/truck/looks.hpp"
-#include "app/diagnosis/truck/low_pass.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
+#include "app/identify/low_pass.hpp"
 #include "dampline/effect/explainer.hpp"
 
 namespace dampline::app {

@@ -203,6 +203,8 @@ Explanation conclude(const Explained& explained, RunResult& result) {
     if (!explained.convergence.rows.empty()) result.convergence = explained.convergence;
   }
   result.faults.drift = drift_of(explained);
+  out.known.unsteady = result.faults.drift && !explained.drifts &&
+                       result.faults.drift->parameter != DriftFinding::kNotTold;
   for (std::string& warning : result.warnings)
     if (result.faults.drift && warning.starts_with(kNotConstant))
       warning = drift_warning(*result.faults.drift, "record");

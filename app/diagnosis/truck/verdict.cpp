@@ -13,6 +13,7 @@ namespace dampline::app {
 namespace {
 
 constexpr double kFaintGain = 0.025;
+constexpr double kClearlyAbove = 1.2;   // the floor: then what effects take of the excess is known
 constexpr double kShareOfExcess = 0.1;  // over the floor, that effects must take
 // Sensors out of place; effects leave at most 0.05, or 2.8 times the floor (P1 of constants.md).
 constexpr double kMuchLeft = 0.1;
@@ -91,8 +92,7 @@ bool are_late_alike(const LateEstimates& late_s) noexcept {
 bool are_faint(const effect::Explanation& e) noexcept {
   const double before = base_error(e);
   const double taken = before - e.final.held_out_nmse;
-  return floor_ratio(e) > effect::kIncompleteAbove &&
-         taken < kShareOfExcess * (before - e.floor_nmse);
+  return floor_ratio(e) > kClearlyAbove && taken < kShareOfExcess * (before - e.floor_nmse);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@ namespace dampline::effect {
 namespace {
 
 constexpr double kMoreGain = 0.02;
+constexpr double kRough =
+    0.05;  // share of samples with values put in: their errors ring as modes do
 
 bool passes(FaultKind kind) noexcept {
   return kind == FaultKind::kSpikes || kind == FaultKind::kDcJump || kind == FaultKind::kNoiseBurst;
@@ -50,8 +52,12 @@ void disallow_mimics(const FaultView& faults, ExplainerConfig& config) noexcept 
   const auto list = faults.list();
   const bool passed =
       std::any_of(list.begin(), list.end(), [](const Fault& fault) { return passes(fault.kind); });
-  if (passed || faults.repairs.bridged.share > HoleBridge::kMany)
-    config.allowed[static_cast<std::size_t>(Effect::kImpulsiveInput)] = false;
+  const auto disallow = [&config](Effect effect) {
+    config.allowed[static_cast<std::size_t>(effect)] = false;
+  };
+  const double bridged = faults.repairs.bridged.share;
+  if (passed || bridged > HoleBridge::kMany) disallow(Effect::kImpulsiveInput);
+  if (bridged > kRough) disallow(Effect::kUnmodelledMode);
 }
 
 bool drift_explains_more(const ParameterDrift& drift, const Explanation& explanation) noexcept {

@@ -171,7 +171,7 @@ class RepeatWatch {
       first_together_ = -1;
     }
     if (first_together_ < 0) first_together_ = tick;
-    if (moved(kFastMoves)) together_ += 1.0;
+    if (moved(kFastMoves) && all_moved()) together_ += 1.0;
     if (first_tick_ < 0) first_tick_ = tick;
     last_tick_ = tick;
   }
@@ -180,6 +180,11 @@ class RepeatWatch {
     std::int64_t codes = 0;
     for (std::size_t c = 0; c < kChannels; ++c) codes += std::abs(last_[0][c] - last_[1][c]);
     return codes >= least;
+  }
+  [[nodiscard]] bool all_moved() const noexcept {
+    bool all = true;
+    for (std::size_t c = 0; c < kChannels; ++c) all = all && last_[0][c] != last_[1][c];
+    return all;
   }
   /// Repetitions of all channels if each repeated its code by itself: slow motion, coarse steps.
   /// Block by block, since a car that brakes moves otherwise before.

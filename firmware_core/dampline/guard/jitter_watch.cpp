@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kJitterBlocks = 6;   // that tell
 constexpr double kJitterSure = 8.0;        // deviations; records without jitter reach 1.6
+constexpr int kSureBlocks = 2;             // in a row
 constexpr double kLeastJitterS = 5e-5;     // rms
 constexpr double kFewestCompared = 300.0;  // samples of a block
 
@@ -49,9 +50,14 @@ void JitterWatch::close_block(bool sound, std::int64_t tick, FaultLog& log) noex
   variance_.add(0.5 * (c[1] - c[2]) / w2, tick);
   const double usual = variance_.median();
   if (variance_.size() < kJitterBlocks || !(usual > 0.0)) return;
-  const double deviation = variance_.scatter() / std::sqrt(static_cast<double>(variance_.size()));
+  const auto blocks = static_cast<double>(variance_.size());
+  // The scatter of a few blocks is hardly known: twice as much of six, as it is of many.
+  const double doubt = 1.0 + static_cast<double>(kJitterBlocks) / blocks;
+  const double deviation = doubt * variance_.scatter() / std::sqrt(blocks);
   const double rms_s = std::sqrt(usual) / rate_hz_;
-  if (usual < kJitterSure * deviation || rms_s < kLeastJitterS) return;
+  const bool sure = usual >= kJitterSure * deviation && rms_s >= kLeastJitterS;
+  sure_blocks_ = sure ? sure_blocks_ + 1 : 0;
+  if (sure_blocks_ < kSureBlocks) return;
   log.report(FaultKind::kJitter, FaultChannel::kWheelsets, log.seconds(tick), rms_s);
 }
 

@@ -50,6 +50,7 @@ class JitterWatch {
   Sums chunk_ = Sums::Zero();
   Sums block_ = Sums::Zero();
   BlockSeries variance_;  // samples^2
+  int sure_blocks_{0};    // in a row, that tell of jitter
 };
 
 }  // namespace dampline

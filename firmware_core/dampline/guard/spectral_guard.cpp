@@ -15,7 +15,7 @@ constexpr double kMatch = 0.35;      // of the wheelsets' whitened correlation
 constexpr double kSwapped = 1.0;     // fast power of the frame over a wheelset's; clean 0.02
 // Of the match: a frame among the wheelsets moves with the other one at once, too. Wheelsets that
 // roll slowly, so that friction holds the frame, do not, and the frame has as much power as they.
-constexpr double kAtOnce = 0.5;
+constexpr double kAtOnce = 0.3;
 constexpr int kBlocksInARow = 2;             // before a lasting fault is named
 constexpr std::uint32_t kFirstSegments = 3;  // of the block that finds the delay
 constexpr int kAligned = 2;                  // samples

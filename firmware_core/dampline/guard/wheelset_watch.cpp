@@ -16,6 +16,8 @@ constexpr double kDeviations = 4.3;
 constexpr double kFits = 0.55;
 constexpr double kFitsNot = -0.45;
 constexpr double kMostLeft = 4.5;
+constexpr double kMostShare =
+    0.05;  // or of what is left without the shift: the ends of a slip ring
 constexpr double kMostRough = 0.01;     // share of windows with more left than that
 constexpr double kRoughWindows = 4500;  // that it is smoothed over; a minute
 
@@ -59,7 +61,10 @@ SlipFinder::Window SlipFinder::window(std::int64_t tick, std::size_t length,
   const auto samples = static_cast<double>(length * std::size_t{ShiftSums::kSamples});
   const auto best = static_cast<std::size_t>(
       std::min_element(sums.error.begin(), sums.error.end()) - sums.error.begin());
-  Window out{.tick = tick, .shift = best, .left = sums.error[best] / (samples * sigma * sigma)};
+  Window out{.tick = tick,
+             .shift = best,
+             .left = sums.error[best] / (samples * sigma * sigma),
+             .share = sums.error[best] / sums.error[ShiftSums::kNone]};
   for (std::size_t s = 0; s < ShiftSums::kShifts; ++s) {
     if (s == ShiftSums::kNone || !(sums.change[s] > 0.0)) continue;
     const double gain = sums.error[ShiftSums::kNone] - sums.error[s];
@@ -73,8 +78,8 @@ bool SlipFinder::is_slip(const Window& found, const Window& before, const Window
   const std::size_t s = found.shift;
   const int samples = static_cast<int>(s) - ShiftSums::kReach;
   return std::abs(samples) <= kMostShift && found.deviations >= kDeviations &&
-         found.left <= kMostLeft && found.fit[s] >= kFits && before.fit[s] <= kFitsNot &&
-         after.fit[s] <= kFitsNot;
+         (found.left <= kMostLeft || found.share <= kMostShare) && found.fit[s] >= kFits &&
+         before.fit[s] <= kFitsNot && after.fit[s] <= kFitsNot;
 }
 
 bool SlipFinder::update(std::int64_t tick, const ShiftSums& chunk, std::int64_t delay_samples,
@@ -259,21 +264,28 @@ void WheelsetWatch::follow_slip() noexcept {
     if (too_long_ && since_leap) jump_tick_ = leap_tick_;
   } else if (apart_ && apart < kTogether * usual) {
     const bool full_length = length + kChunk >= std::abs(whole_);
-    if (whole_slip_ && !too_long_ && full_length && slip_count_ < slips_.size())
-      slips_[slip_count_++] = now_;
+    if (whole_slip_ && !too_long_ && full_length) hold(now_);
     apart_ = too_long_ = false;
   }
 }
 
-// Where the wheelsets differ too much for follow_slip().
+void WheelsetWatch::hold(const Slip& slip) noexcept {
+  const auto is_same = [&](const Slip& held) {
+    return std::abs(held.tick - slip.tick) < std::abs(whole_);
+  };
+  const auto* const end = slips_.begin() + static_cast<std::ptrdiff_t>(slip_count_);
+  if (slip_count_ == slips_.size() || std::any_of(slips_.cbegin(), end, is_same)) return;
+  slips_[slip_count_++] = slip;
+}
+
+// Where the wheelsets differ too much for follow_slip(), and where a slip is too short for it.
 void WheelsetWatch::find_slip() noexcept {
   for (std::size_t s = 0; s < kShifts; ++s) error_[s] += sums_.error[s];
   Slip slip;
   const bool found =
       finder_.update(chunk_tick_, sums_, std::abs(whole_), std::sqrt(usual_square_), slip);
   sums_ = {};
-  if (!found || usual_square_ < kAlike * square_[1] || slip_count_ == slips_.size()) return;
-  slips_[slip_count_++] = slip;
+  if (found) hold(slip);
 }
 
 bool WheelsetWatch::struck(const Slip& slip, std::int64_t tick) const noexcept {

@@ -52,6 +52,7 @@ class SlipFinder {
     std::size_t shift{ShiftSums::kNone};           // that fits best
     double deviations{0.0};                        // by which it does
     double left{0.0};                              // squared difference then, over the usual one
+    double share{1.0};                             // and over that without the shift
     std::array<double, ShiftSums::kShifts> fit{};  // 1: shifted; -1: not shifted
   };
   // Sums over the chunks up to the newest; that which leaves the least difference fits best.
@@ -115,6 +116,7 @@ class WheelsetWatch {
   void watch_jitter(std::int64_t n) noexcept;
   void end_chunk() noexcept;
   void follow_slip() noexcept;
+  void hold(const Slip& slip) noexcept;
   void find_slip() noexcept;
   [[nodiscard]] bool struck(const Slip& slip, std::int64_t tick) const noexcept;
   void report_slips(std::int64_t tick, FaultLog& log) noexcept;

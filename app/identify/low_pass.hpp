@@ -4,6 +4,7 @@
 
 #include "app/config/config.hpp"
 #include "app/record/feed.hpp"
+#include "app/run/result.hpp"
 
 namespace dampline::app {
 
@@ -13,10 +14,14 @@ inline constexpr double kUsualHz = 100.0;  ///< above, corners are hardly told a
 /// leaves clearly less of the record, held out, than `as_declared`, behind the declared one, and
 /// `left_nmse`, which the effects found there leave, if any were. Its phase and gain are put right
 /// before the estimate, so the wrong one leaves more; above 100 Hz that is hardly seen, and does
-/// not matter. Reads the record some times more. Throws RunError.
+/// not matter. Reads the record one to some times more. Throws RunError.
 [[nodiscard]] std::optional<double> other_low_pass_hz(const Config& config,
                                                       const SourceOptions& source,
                                                       double as_declared,
                                                       std::optional<double> left_nmse);
+
+/// Names a low pass that is not as declared in what identify says of a file whose numbers it
+/// trusts; they are trusted no more. Reads the first two minutes of the record, once or some times.
+void look_for_low_pass(const Config& config, const SourceOptions& source, RunResult& result);
 
 }  // namespace dampline::app
