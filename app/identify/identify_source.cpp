@@ -124,7 +124,9 @@ Identified identify_source(const Config& config, const SourceOptions& source, So
   Identified out = kind == SourceKind::kRigRows
                        ? identify_rig_file(config, source, show_progress)
                        : identify_truck(config, source, kind, show_progress);
-  if (is_file && kind != SourceKind::kRigRows) look_for_low_pass(config, source, out.result);
+  const bool can_be_read_again = is_file || kind == SourceKind::kBlackbox;
+  if (can_be_read_again && kind != SourceKind::kRigRows)
+    look_for_low_pass(config, source, out.result);
   out.inputs.insert(out.inputs.begin(), record.get());
   return out;
 }

@@ -79,8 +79,8 @@ class PipeEnd {
   int empty_{0};    // in a row
 };
 
-/// What `feed` has, at least its first `most_s`, through `run`. Throws RunError when the record
-/// holds no complete sample.
+/// What `feed` has, at least until `most_s` of it are used, through `run`. Throws RunError when the
+/// record holds no complete sample.
 template <Parts kParts>
 void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, TruckRun<kParts>& run,
           double most_s = std::numeric_limits<double>::infinity()) {
@@ -91,7 +91,7 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, Tru
     for (const CanFrame& frame : batch.frames) run.take(frame);
     for (const Sample& sample : batch.samples) run.take(sample);
     more = batch.more && !end.reached(batch.frames.empty() && batch.samples.empty()) &&
-           run.time_s() < most_s;
+           run.used_s() < most_s;
     if (!progress.due()) continue;
     progress.show(feed.share_read(), run.time_s(), run.state_text());
   }
@@ -101,8 +101,8 @@ void pump(SampleFeed& feed, const SourceOptions& source, bool show_progress, Tru
                                feed.explain_emptiness(run.frames()))};
 }
 
-/// A truck's record alone, without its checksum; no more than its first `most_s`. Throws RunError
-/// or UsageError.
+/// A truck's record alone, without its checksum; no more than until `most_s` of it are used.
+/// Throws RunError or UsageError.
 [[nodiscard]] Identified identify_truck(const Config& config, const SourceOptions& source,
                                         SourceKind kind, bool show_progress,
                                         double most_s = std::numeric_limits<double>::infinity());

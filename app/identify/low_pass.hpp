@@ -21,7 +21,8 @@ inline constexpr double kUsualHz = 100.0;  ///< above, corners are hardly told a
                                                       std::optional<double> left_nmse);
 
 /// Names a low pass that is not as declared in what identify says of a file whose numbers it
-/// trusts; they are trusted no more. Reads the first two minutes of the record, once or some times.
+/// trusts; they are trusted no more. Reads the first two minutes that can be used, once or some
+/// times.
 void look_for_low_pass(const Config& config, const SourceOptions& source, RunResult& result);
 
 }  // namespace dampline::app

@@ -199,16 +199,9 @@ std::string TruckRun<kParts>::state_text() const {
 
 template <Parts kParts>
 TruckView TruckRun<kParts>::view() noexcept {
-  return {core_->snapshot(),
-          first_tick_,
-          newest_tick_,
-          first_time_ns_,
-          newest_time_ns_,
-          core_->faults(),
-          core_->alarms(),
-          core_->guard().block().wheelset_mps2,
-          blocks_[static_cast<std::size_t>(BlockStatus::kUsed)] +
-              blocks_[static_cast<std::size_t>(BlockStatus::kPartial)]};
+  return {core_->snapshot(), first_tick_,     newest_tick_,    first_time_ns_,
+          newest_time_ns_,   core_->faults(), core_->alarms(), core_->guard().block().wheelset_mps2,
+          used_blocks()};
 }
 
 template <Parts kParts>

@@ -97,6 +97,10 @@ class TruckRun {
   }
   /// The newest sample, in seconds from the first; by the nominal rate.
   [[nodiscard]] double time_s() const noexcept;
+  /// What the estimate rests on so far.
+  [[nodiscard]] double used_s() const noexcept {
+    return Estimator::kBlockS * static_cast<double>(used_blocks());
+  }
   /// What became of the frames.
   [[nodiscard]] FrameSummary frames() const noexcept {
     return {core_->assembler().counts(), first_time_ns_};
@@ -114,6 +118,10 @@ class TruckRun {
     void judged(const Sample& sample, const UpdateResult& result) { run.note(sample, result); }
   };
 
+  [[nodiscard]] std::uint64_t used_blocks() const noexcept {
+    return blocks_[static_cast<std::size_t>(BlockStatus::kUsed)] +
+           blocks_[static_cast<std::size_t>(BlockStatus::kPartial)];
+  }
   void note_taken(const Sample& sample) noexcept;
   void note(const Sample& sample, const UpdateResult& result);
   void note_block(const BlockReport& block);

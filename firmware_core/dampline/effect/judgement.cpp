@@ -9,8 +9,8 @@ namespace dampline::effect {
 namespace {
 
 constexpr double kMoreGain = 0.02;
-constexpr double kRough =
-    0.05;  // share of samples with values put in: their errors ring as modes do
+// Share of samples with values put in: their errors ring as modes do.
+constexpr double kRough = 0.05;
 
 bool passes(FaultKind kind) noexcept {
   return kind == FaultKind::kSpikes || kind == FaultKind::kDcJump || kind == FaultKind::kNoiseBurst;

@@ -22,7 +22,7 @@ constexpr double kHannPower = 0.375;  // mean square of the window
 constexpr double kCoherent = 0.4;
 constexpr std::size_t kButterfliesSlice = 96;
 constexpr double kMostWeight = 50.0;
-constexpr int kAtOnceSamples = 2;      // samples
+constexpr int kAtOnceSamples = 2;
 constexpr double kShakenHz = 85.0;     // below, wheelsets shake most, and not as 1 / f^2
 constexpr double kLeastFolded = 0.45;  // corner, of the rate: then little of a slope is left
 
