@@ -153,7 +153,8 @@ TEST_P(LiveExplaining, SaysAtAnyTimeWhatAFileOfTheSameFramesSays) {
   for (const json& said : {live, concluded}) {
     EXPECT_EQ(first_step(said), ride.named);
     if (!same_samples) continue;
-    EXPECT_NEAR(floor_of(said), floor_of(file), 0.1 * floor_of(file));
+    // Of a wheelset that is a copy the noise is not known: the floor scatters more.
+    EXPECT_NEAR(floor_of(said), floor_of(file), (ride.spoil ? 0.2 : 0.1) * floor_of(file));
     for (const char* key : {"verdict", "trust"}) EXPECT_EQ(said.at(key), file.at(key)) << key;
     EXPECT_EQ(said.at("trust"), ride.trust) << said.at("trust_reasons");
   }

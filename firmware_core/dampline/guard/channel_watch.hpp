@@ -162,7 +162,7 @@ class RepeatWatch {
 
  private:
   [[nodiscard]] bool is_together() const noexcept {
-    return together_ >= (known_ ? 1.0 : kTogether);
+    return together_ >= (known_ ? 1.0 : kTogether) && by_chance() < kFewByChance;
   }
   void join(std::int64_t tick) noexcept {
     if (tick - last_tick_ > together_samples_) {
