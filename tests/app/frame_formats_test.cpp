@@ -109,7 +109,9 @@ with open('back.log', 'w') as out:
   EXPECT_EQ(state_of("a9.blf.gz"), state);
 }
 
-TEST_F(FrameFormats, Mdf4InEveryLayout) {
+using FrameFormatsNightly = FrameFormats;
+
+TEST_F(FrameFormatsNightly, Mdf4InEveryLayout) {
   ASSERT_TRUE(python(R"(
 import sys
 sys.path.insert(0, ')" DAMPLINE_SOURCE_DIR R"(/tests')

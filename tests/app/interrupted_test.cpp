@@ -166,7 +166,9 @@ TEST_F(Interrupted, AKillLeavesTheEarlierRunOrTheNewOne) {
       << "the next run removes what killed ones left";
 }
 
-TEST_F(Interrupted, AnErrorLeavesTheEarlierRunOrTheNewOneAndNothingElse) {
+using InterruptedNightly = Interrupted;
+
+TEST_F(InterruptedNightly, AnErrorLeavesTheEarlierRunOrTheNewOneAndNothingElse) {
   for (const int error : {EIO, ENOSPC}) {
     for (int call = 1; call <= calls_; ++call) {
       restore();

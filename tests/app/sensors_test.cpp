@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, LateChannelsTest,
                          [](const auto& delays) { return std::string{delays.param.name}; });
 
 /// Motion of the wheelsets that the sampling folds is not the noise that was declared.
-TEST(PlainSensorsNoise, IsNotExceededByWhatIsFolded) {
+TEST(PlainSensorsNoiseNightly, IsNotExceededByWhatIsFolded) {
   for (const PlainTruck& truck : kPlainTrucks) {
     Config config = test::plain_config(truck, {});
     config.input.noise_mps2 = {0.02, 0.02, 0.02};

@@ -39,7 +39,7 @@ void expect_within(const Seen& s, const std::string& name, double truth) {
 
 // They shake so much by short waves that the low pass takes a part of the velocity: 0.5 to 0.6 %
 // low at +- 0.12 to 0.14 % before.
-TEST(UnseenTruck, OfShortWavesHasItsLevel) {
+TEST(UnseenTruckNightly, OfShortWavesHasItsLevel) {
   for (const std::uint64_t seed : {36U, 39U}) {
     const Seen s = seen(seed, 300.0);
     EXPECT_STREQ(s.truck.truck.name, "none");
@@ -50,7 +50,7 @@ TEST(UnseenTruck, OfShortWavesHasItsLevel) {
 }
 
 // Their kink is not where the motion's mean is, and was a stop at 0.3 mm beside the spring.
-TEST(UnseenTruck, OfAnUnevenSpringHasNoStop) {
+TEST(UnseenTruckNightly, OfAnUnevenSpringHasNoStop) {
   const Seen s = seen(80, 300.0);
   EXPECT_STREQ(s.truck.truck.name, "asymmetric_stiffness");
   EXPECT_EQ(s.names(), "asymmetric_stiffness ");
@@ -58,7 +58,7 @@ TEST(UnseenTruck, OfAnUnevenSpringHasNoStop) {
 
 // Springs that differ by 58 %: their kink lies a fifth of the motion off its mean, which was a stop
 // at 1.3 mm, a memory and another truck, with a spring 32 % too soft that was "trusted".
-TEST(UnseenTruck, OfAVeryUnevenSpringHasItsStiffness) {
+TEST(UnseenTruckNightly, OfAVeryUnevenSpringHasItsStiffness) {
   const Seen s = seen(5019, 300.0);
   EXPECT_STREQ(s.truck.truck.name, "asymmetric_stiffness");
   EXPECT_EQ(s.names(), "asymmetric_stiffness ");
@@ -74,7 +74,7 @@ TEST(UnseenTruck, OfABacklashThatYieldsHasNoLateFrame) {
 
 // Damped by as much again as by friction, which hardly lets it move: damping of -0.8 MN s/m beside
 // a relaxing spring of 1.1 GN/m, two late wheelsets and a level 18 % low were "trusted".
-TEST(UnseenTruck, ThatHardlyMovesHasItsDamping) {
+TEST(UnseenTruckNightly, ThatHardlyMovesHasItsDamping) {
   const Seen s = seen(34, 420.0);
   EXPECT_STREQ(s.truck.truck.name, "asymmetric_viscous");
   EXPECT_EQ(s.names(), "asymmetric_viscous ");

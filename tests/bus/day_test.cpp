@@ -127,7 +127,7 @@ void print(const Day& day) {
 
 // run_with starts it in two machines, one after the other, and compares what they leave; so does
 // tests/bus/day, for a whole day.
-TEST(TimeTravelTwice, DrivingWithAStandstillLosesNothingAndGivesTheSameBytes) {
+TEST(TimeTravelNightlyTwice, DrivingWithAStandstillLosesNothingAndGivesTheSameBytes) {
   const char* const keep = std::getenv("DAMPLINE_KEEP");
   ASSERT_NE(keep, nullptr) << "start it by tests/bus/run_with";
   const Plan plan = Plan::chosen();

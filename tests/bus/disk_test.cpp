@@ -80,7 +80,9 @@ std::uint64_t samples_in(const fs::path& spool) {
   return out;
 }
 
-TEST_F(TimeTravelDisk, ThatFillsKeepsStatesWaitingAndAClockThatJumpsLosesNone) {
+using TimeTravelNightlyDisk = TimeTravelDisk;
+
+TEST_F(TimeTravelNightlyDisk, ThatFillsKeepsStatesWaitingAndAClockThatJumpsLosesNone) {
   const Disk disk{folder_ / "disk"};
   std::ofstream{folder_ / "car.toml", std::ios::app}
       << "[record]\nvehicle = \"4711\"\ntruck = \"front\"\n[model]\nvelocity_corner_hz = 0.7\n"
@@ -107,7 +109,7 @@ TEST_F(TimeTravelDisk, ThatFillsKeepsStatesWaitingAndAClockThatJumpsLosesNone) {
   EXPECT_EQ(all.at("counts").at("samples"), 80 * 300);
 }
 
-TEST_F(TimeTravelDisk, RemovedRunDirectoryIsMadeAgain) {
+TEST_F(TimeTravelNightlyDisk, RemovedRunDirectoryIsMadeAgain) {
   const fs::path run = folder_ / "run";
   LiveProgram live{folder_, bus_.name(), run, options()};
   Child sender = send(40.0);
@@ -122,7 +124,7 @@ TEST_F(TimeTravelDisk, RemovedRunDirectoryIsMadeAgain) {
   EXPECT_GT(all.at("live").at("records_lost").get<int>(), 0);
 }
 
-TEST_F(TimeTravelDisk, ReadOnlyAtTheEndIsWaitedFor) {
+TEST_F(TimeTravelNightlyDisk, ReadOnlyAtTheEndIsWaitedFor) {
   const Disk disk{folder_ / "disk"};
   Child live{command(folder_ / "disk/run"), folder_.path()};
   std::this_thread::sleep_for(seconds{1});
@@ -138,7 +140,7 @@ TEST_F(TimeTravelDisk, ReadOnlyAtTheEndIsWaitedFor) {
   EXPECT_TRUE(fs::exists(folder_ / "disk/run/state.dls"));
 }
 
-TEST_F(TimeTravelDisk, ReadOnlyForGoodSendsTheResultElsewhere) {
+TEST_F(TimeTravelNightlyDisk, ReadOnlyForGoodSendsTheResultElsewhere) {
   const Disk disk{folder_ / "disk"};
   fs::create_directories(folder_ / "refuge");
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "refuge").c_str(), 1);

@@ -74,7 +74,7 @@ class Mover {
   std::thread thread_;
 };
 
-TEST(GpioEdges, LeaveNoneOfAThousandUnaccounted) {
+TEST(GpioEdgesNightly, LeaveNoneOfAThousandUnaccounted) {
   const GpioSim gpio;
   auto opened = open_edges(lines_of(gpio));
   ASSERT_TRUE(opened.ok()) << opened.error_text();

@@ -62,7 +62,7 @@ TEST(TimeTravelProgram, AccountsForAllFramesOfARunWithManyFaults) {
 #if defined(__x86_64__)
 
 // Some of what tests/fault/live_calls does with every system call.
-TEST(TimeTravelProgram, EndsWellOrSaysWhyWhateverCallFails) {
+TEST(TimeTravelNightlyProgram, EndsWellOrSaysWhyWhateverCallFails) {
   const VirtualCan bus;
   run({DAMPLINE_SOURCE_DIR "/tests/fault/calls", "live=" + bus.name(), "--sample", "3", "--jobs",
        "1", "--build", DAMPLINE_BINARY_DIR});

@@ -58,7 +58,7 @@ class Reader {
   bool sent_{false};
 };
 
-TEST(TimeTravelServe, IsSeenByManyAndDisturbedByNone) {
+TEST(TimeTravelNightlyServe, IsSeenByManyAndDisturbedByNone) {
   const Folder folder;
   const auto told = folder / "told";
   {

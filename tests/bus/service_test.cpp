@@ -138,7 +138,7 @@ std::vector<std::string> under_manager(const LiveRun& live, const std::string& s
   return all;
 }
 
-TEST(TimeTravelService, TellsItsManager) {
+TEST(TimeTravelNightlyService, TellsItsManager) {
   const LiveRun live;
   const std::string socket = live.folder / "manager";
   Manager manager{socket};

@@ -122,7 +122,7 @@ class TimeTravelSystemd : public testing::Test {
   std::optional<Child> system_;
 };
 
-TEST_F(TimeTravelSystemd, FromBootToStopEveryFrameIsThere) {
+TEST_F(TimeTravelNightlySystemd, FromBootToStopEveryFrameIsThere) {
   boot();
   ASSERT_TRUE(becomes("ActiveState", "active")) << within({"systemctl", "status", unit()});
   drive(70.0);

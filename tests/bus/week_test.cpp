@@ -175,7 +175,9 @@ class TimeTravelWeek : public testing::Test {
   int kills_{0};
 };
 
-TEST_F(TimeTravelWeek, EveryFrameIsAccountedForWhateverHappens) {
+using TimeTravelNightlyWeek = TimeTravelWeek;
+
+TEST_F(TimeTravelNightlyWeek, EveryFrameIsAccountedForWhateverHappens) {
   const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.02) * 3600.0;  // tests/bus/week: more
   using Act = void (TimeTravelWeek::*)();
   struct Rule {

@@ -136,7 +136,7 @@ TEST(ADrivenMass, IsRefinedByItsOwnMotionWhereTheMotionIsNoisy) {
   }
 }
 
-TEST(ADrivenMass, HasASpringThatHardens) {
+TEST(ADrivenMassNightly, HasASpringThatHardens) {
   const rig::Explanation found = explained([](double x, double) { return 4.4e9 * x * x * x; });
   ASSERT_EQ(found.steps.size(), 1U) << summarize(found);
   EXPECT_EQ(found.steps[0].effect, "cubic_stiffness");
@@ -144,7 +144,7 @@ TEST(ADrivenMass, HasASpringThatHardens) {
   expect_the_rest(found);
 }
 
-TEST(ADrivenMass, HasAHardSpringInItsBase) {
+TEST(ADrivenMassNightly, HasAHardSpringInItsBase) {
   Config config;
   config.model.base = {"viscous", "cubic_stiffness"};
   config.model.inertia = config.model.stiffness = "identify";
@@ -174,7 +174,7 @@ TEST(ADrivenMass, IsMovedByItsOwnDampingAsVanDerPols) {
   EXPECT_NEAR(value_of(found, "viscous"), kViscous - kDrivingNspm, 0.2);
 }
 
-TEST(ADrivenMass, IsToldFromADamperWithoutBeingDeclared) {
+TEST(ADrivenMassNightly, IsToldFromADamperWithoutBeingDeclared) {
   const Law hard = [](double x, double) { return 4.4e9 * x * x * x; };
   const rig::Explanation found = explained(hard, "auto");
   ASSERT_FALSE(found.notes.empty());
@@ -206,7 +206,7 @@ void expect_hysteresis(const Hysteresis& planted) {
   EXPECT_NEAR(value_of(found, "moving_mass"), kMassKg, 0.01 * kMassKg);
 }
 
-TEST(ADrivenMass, HasASpringWithBoucsAndWensHysteresis) {
+TEST(ADrivenMassNightly, HasASpringWithBoucsAndWensHysteresis) {
   expect_hysteresis({6.0e4, 1500.0, 0.9, -1.17});
 }
 
@@ -221,7 +221,7 @@ rig::Explanation freely_explained(const std::string& text,
   return dampline::test::explained(text, config);
 }
 
-TEST(ADrivenMass, HasAFrictionThatBuildsUpBehindMuchNoise) {
+TEST(ADrivenMassNightly, HasAFrictionThatBuildsUpBehindMuchNoise) {
   const Hysteresis dahl{7.0e4, 2600.0, 1.0, 0.0};
   const rig::Explanation found =
       freely_explained(record([](double, double) { return 0.0; }, dahl, 30e-6));
@@ -289,7 +289,7 @@ std::string sticking(unsigned seed) {
 }
 
 /// Friction's leaps, seen through a test function, bend the equations by two deviations.
-TEST(ADrivenMass, IsCompleteWhereItSticksAndItsForceIsNoisy) {
+TEST(ADrivenMassNightly, IsCompleteWhereItSticksAndItsForceIsNoisy) {
   for (const unsigned seed : {1U, 2U}) {
     Config config;
     config.model.base = {"coulomb", "viscous"};

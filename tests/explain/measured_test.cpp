@@ -26,7 +26,7 @@ double mean_rrse(const rig::Fit& fit) {
   return sum / static_cast<double>(fit.record_nmse.size());
 }
 
-TEST(MeasuredDamper, LacksTheMemoryOfItsReversals) {
+TEST(MeasuredDamperNightly, LacksTheMemoryOfItsReversals) {
   if (!std::filesystem::exists(dampline::test::shared_data() / "friction_damper"))
     GTEST_SKIP() << "no friction_damper in the shared data";
   rig::ExplainOptions options;

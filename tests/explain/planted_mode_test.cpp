@@ -134,7 +134,7 @@ TEST(RigMode, PassesAStepAsAMassOnASpringDoes) {
   }
 }
 
-TEST(RigMode, OfAFixtureIsFoundAndPredicted) {
+TEST(RigModeNightly, OfAFixtureIsFoundAndPredicted) {
   const std::array cases{rig::Mode{37.3, 0.06}, rig::Mode{11.9, 0.035}, rig::Mode{71.0, 0.11}};
   for (const rig::Mode& mode : cases) {
     const rig::Explanation found = explained(behind_fixture(mode.hz, mode.damping), 61);

@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string{tested.param.effect};
     });
 
-TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
+TEST(ARigNightly, IsToldOfFrictionAndDampingThatNobodyDeclared) {
   const rig::Explanation friction = explained(simple(), false, 24, {"viscous"});
   ASSERT_FALSE(friction.steps.empty());
   EXPECT_EQ(friction.steps[0].effect, "coulomb") << summarize(friction);
@@ -193,7 +193,7 @@ TEST(ARig, IsToldOfFrictionAndDampingThatNobodyDeclared) {
 }
 
 /// Friction with a memory leads, and is not named in its place.
-TEST(ARig, RelaxesWithTheSizesOfItsSpringAndDashpot) {
+TEST(ARigNightly, RelaxesWithTheSizesOfItsSpringAndDashpot) {
   const double planted[][2] = {{4.0e4, 0.13}, {1.0e5, 0.06}, {2.0e4, 0.5}};
   for (const auto& [stiffness_npm, time_s] : planted) {
     const rig::Explanation found =
@@ -261,7 +261,7 @@ void expect_chain(const rig::Explanation& found) {
 }
 
 /// The spring is nobody's, and comes with the first step.
-TEST(ARig, HasErrorsThatFollowOneAnother) {
+TEST(ARigNightly, HasErrorsThatFollowOneAnother) {
   const auto bent = [](const Motion& m, double s) {
     const double x = m.deflection_m;
     return simple()(m, s) + 9000.0 * x + 1.7e8 * x * x * x;
@@ -273,7 +273,7 @@ TEST(ARig, HasErrorsThatFollowOneAnother) {
   expect_chain(explained(presliding(0.0011), false, 75));
 }
 
-TEST(ARig, LacksNothingWhereNothingIsMissing) {
+TEST(ARigNightly, LacksNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {21U, 22U, 23U}) {
     const rig::Explanation found = explained(simple(), false, seed);
     EXPECT_TRUE(found.steps.empty()) << summarize(found);
@@ -322,7 +322,7 @@ TEST(ARig, NamesTwoEffectsRatherThanOneThatStandsForBoth) {
   EXPECT_EQ(names, (std::vector<std::string>{"stribeck", "viscous"})) << summarize(found);
 }
 
-TEST(ARig, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
+TEST(ARigNightly, HasNoFunctionOfSpeedWhereThereIsOneSpeed) {
   // Up and down at 20 mm/s: what a viscous force is cannot be told from Coulomb friction.
   std::mt19937_64 random{54};
   std::normal_distribution<double> noise;
@@ -349,7 +349,7 @@ TEST(ARig, SaysThatSomethingIsLeftThatNoEffectExplains) {
   EXPECT_STREQ(found.verdict(), "unexplained") << summarize(found);
 }
 
-TEST(ARig, IsPredictedFromItsMotionAlone) {
+TEST(ARigNightly, IsPredictedFromItsMotionAlone) {
   const dampline::test::TemporaryFile fitted{record_of(backlash(0.0037), 41), ".csv"};
   const dampline::test::TemporaryFile other{record_of(backlash(0.0037), 42), ".csv"};
   // The same motion with the force wiped out after the first second gives the same prediction.

@@ -39,7 +39,7 @@ rig::Explanation explained(const std::function<double(double)>& force_at, std::u
   return dampline::test::explained(text);
 }
 
-TEST(ForceOutOfStep, IsNamedWithItsDelay) {
+TEST(ForceOutOfStepNightly, IsNamedWithItsDelay) {
   for (const double late_s : {0.0011, -0.0034, 0.0128}) {  // 0.44, 1.36 and 5.1 samples
     const rig::Explanation found = explained(
         [late_s](double t) { return friction_at(t - late_s) + 3000.0 * velocity_at(t - late_s); },

@@ -149,7 +149,7 @@ TEST(ATruck, LacksSomethingWithoutAName) {
 }
 
 /// By the other simulation; the other truck's friction is not this one's.
-TEST(ATruck, SeesTheOtherTruckOfTheBodyInItsOwnMotion) {
+TEST(ATruckNightly, SeesTheOtherTruckOfTheBodyInItsOwnMotion) {
   for (const test::Coupling& to :
        {test::Coupling{5600.0, 0.43, 1.0}, {5600.0, -0.43, 1.15}, {4400.0, 0.31, 0.9}}) {
     const Explained found = explained(test::coupled(to), 27);

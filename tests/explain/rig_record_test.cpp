@@ -124,7 +124,7 @@ void expect_a_plausible_friction(const Explanation& found, double level_n) {
   }
 }
 
-TEST(AMagnetorheologicalDamper, AtConstantCurrentHasFrictionWithAMemory) {
+TEST(AMagnetorheologicalDamperNightly, AtConstantCurrentHasFrictionWithAMemory) {
   for (const auto& [name, level_n] :
        {std::pair{"mr_damper_press_0A", 190.0}, std::pair{"mr_damper_press_1A", 1450.0}}) {
     const auto rows = stored(name);
@@ -133,7 +133,7 @@ TEST(AMagnetorheologicalDamper, AtConstantCurrentHasFrictionWithAMemory) {
   }
 }
 
-TEST(AHystereticOscillator, IsFoundWithoutADeclaration) {
+TEST(AHystereticOscillatorNightly, IsFoundWithoutADeclaration) {
   const auto rows = stored("bouc_wen_multisine");
   if (rows.empty()) GTEST_SKIP() << "no rigs in the shared data";
   const Explanation found = told(text_of({rows.begin(), rows.begin() + 16384}));

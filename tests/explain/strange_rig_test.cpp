@@ -136,7 +136,7 @@ double named_gain(const rig::Explanation& found) {
   return 0.0;
 }
 
-TEST(AStrangersRig, IsToldOfAWrongSensitivity) {
+TEST(AStrangersRigNightly, IsToldOfAWrongSensitivity) {
   EXPECT_NEAR(named_gain(explained(with_rate("velocity_mps", &Row::velocity_mps, 1.037))), 3.7,
               0.1);
   EXPECT_NEAR(named_gain(explained(with_rate("accel_mps2", &Row::accel_mps2, 0.943))), -5.7, 0.2);

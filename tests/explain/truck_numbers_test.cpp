@@ -96,7 +96,7 @@ TEST(ATrucksNumbers, ChainWhereAChannelIsLate) {
 }
 
 // Of 0.5 to 1 ms a fifth was missing, 10 deviations.
-TEST(ATrucksNumbers, SayHowLateAChannelIsBelowAMillisecond) {
+TEST(ATrucksNumbersNightly, SayHowLateAChannelIsBelowAMillisecond) {
   for (const std::size_t steps : {9U, 13U, 17U}) {
     Plant plant;
     plant.frame_late = steps;

@@ -148,7 +148,9 @@ TEST_F(Archive, GivesTheSameBytesByTheRanksOfMpi) {
   EXPECT_EQ(wrong.code, 2) << "ends, and waits for nobody";
 }
 
-TEST_F(Archive, OfTasksOfSlurmHasTheSameBytes) {
+using ArchiveNightly = Archive;
+
+TEST_F(ArchiveNightly, OfTasksOfSlurmHasTheSameBytes) {
   if (!has_program("slurmctld") || !has_program("munged") || ::geteuid() != 0)
     GTEST_SKIP() << "no slurm-wlm, or not root";
   const std::string bytes = expected();

@@ -208,7 +208,9 @@ TEST_F(Nats, AStateOfAnotherCarIsRefusedWhateverItsSubject) {
               HasSubstr("came on subject dl.state.4711.front.5, expected dl.state.4712.front."));
 }
 
-TEST_F(Nats, AKilledCollectorGoesOn) {
+using NatsNightly = Nats;
+
+TEST_F(NatsNightly, AKilledCollectorGoesOn) {
   constexpr int kCars = 120;
   for (int i = 0; i < kCars; ++i) put("spool", of(states().back(), "4711", i));
   ASSERT_EQ(program_.run("forward spool --once --nats " + hub() + as("car-4711")).code, 0);
@@ -325,7 +327,9 @@ class Fleet : public Nats {
   std::mt19937 random_{4};
 };
 
-TEST_F(Fleet, MergesToTheBytesOfItsFilesWhateverFails) {
+using FleetNightly = Fleet;
+
+TEST_F(FleetNightly, MergesToTheBytesOfItsFilesWhateverFails) {
   configure("cars.conf",
             "s|\"car-4711\"|\"depot\"|; s|dl.state.4711.>|dl.state.>|; s|_INBOX.4711.>|_INBOX.>|");
   configure("leaf.conf", "s|car-4711|depot|");

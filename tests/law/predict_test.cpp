@@ -155,7 +155,9 @@ std::string carriage(unsigned seed) {
   return out;
 }
 
-TEST_F(Predict, ItsBandHoldsWhatAForceThatNobodyMeasuredMakes) {
+using PredictNightly = Predict;
+
+TEST_F(PredictNightly, ItsBandHoldsWhatAForceThatNobodyMeasuredMakes) {
   program_.write("c.toml",
                  "[model]\nbase = [\"coulomb\", \"viscous\"]\ninertia = \"identify\"\n"
                  "stiffness = \"none\"\nrig_corner_hz = 20.0\n");
@@ -265,7 +267,7 @@ TEST_F(Predict, TenLinesOfPythonMoveTheSameLaw) {
 
 /// The simulator's own frame, on wheelsets that the law never saw; what is left is sensors and
 /// rounding, as explain has them.
-TEST_F(Predict, MovesATrucksFrameByItsWheelsets) {
+TEST_F(PredictNightly, MovesATrucksFrameByItsWheelsets) {
   for (const char* effect : {"", "--effect presliding_hysteresis", "--effect progressive_friction",
                              "--effect viscoelastic"}) {
     const std::string simulate = fmt::format("simulate --quiet --force {} ", effect);

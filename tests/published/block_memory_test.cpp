@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
 #include <vector>
+
+#include "tests/dense.hpp"
 
 namespace dampline {
 namespace {
@@ -41,7 +43,7 @@ Eigen::Vector3d batch(const std::vector<Stored>& blocks, const std::vector<doubl
     more << all, std::sqrt(weight[b]) * blocks[b];
     all = more;
   }
-  return all.leftCols<3>().colPivHouseholderQr().solve(all.col(3));
+  return test::least_squares(all.leftCols(3), all.col(3));
 }
 
 template <int Entries>

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
 #include "published/wavelet/estimates.hpp"
 #include "published/wavelet/motion_rows.hpp"
+#include "tests/dense.hpp"
 #include "tests/published/prescribed_motion.hpp"
 
 namespace dampline {
@@ -40,7 +41,7 @@ Eigen::Vector3d batch(const std::vector<Row>& rows, std::size_t first, std::size
   for (std::size_t i = first; i < last; ++i) {
     a.row(static_cast<Eigen::Index>(i - first)) = rows[i].transpose();
   }
-  return a.leftCols(3).householderQr().solve(a.col(3));
+  return test::least_squares(a.leftCols(3), a.col(3));
 }
 
 double difference(const Eigen::Vector3d& theta, const Eigen::Vector3d& truth) {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
+
+#include "tests/dense.hpp"
 
 namespace dampline {
 namespace {
@@ -26,8 +28,8 @@ void expect_spanned() {
   using Functions = Sensitivities<TermList<T>>;
   const T term{};
   for (const bool by_x : {true, false}) {
-    Eigen::Matrix<double, 24, 1 + Functions::kCount> functions;
-    Eigen::Matrix<double, 24, 1> slope;
+    Eigen::MatrixXd functions{24, 1 + Functions::kCount};
+    Eigen::VectorXd slope{24};
     for (int i = 0; i < 24; ++i) {
       const double x = (i % 5 - 1.7) * 0.8;
       const double v = (i % 7 - 2.6) * 0.5;
@@ -39,7 +41,7 @@ void expect_spanned() {
       Functions::fill(x, v, row, 1);
       functions.row(i) = row.transpose();
     }
-    const auto fit = functions.colPivHouseholderQr().solve(slope).eval();
+    const Eigen::VectorXd fit = test::least_squares(functions, slope);
     EXPECT_LT((functions * fit - slope).norm(), 1e-8 * (1.0 + slope.norm())) << by_x;
   }
 }

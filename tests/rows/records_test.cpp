@@ -117,7 +117,9 @@ TEST_F(Silverbox, AtItsOwnRateExplainIsNearerAndTheRowsWarn) {
   EXPECT_TRUE(nlohmann::json::parse(rows.output).at("std_is_lower_bound"));
 }
 
-TEST_F(Silverbox, AtFourTimesTheRateTheRowsAreNear) {
+using SilverboxNightly = Silverbox;
+
+TEST_F(SilverboxNightly, AtFourTimesTheRateTheRowsAreNear) {
   record(4);
   const auto rows = by_rows(" --choose-terms");
   ASSERT_EQ(rows.code, 0) << rows.error;
