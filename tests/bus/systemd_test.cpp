@@ -36,7 +36,7 @@ void set_clock(std::int64_t time_s) {
 }
 
 /// The system, its service enabled for a bus with three sensors.
-class TimeTravelSystemd : public testing::Test {
+class TimeTravelNightlySystemd : public testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists("/lib/systemd/systemd")) GTEST_SKIP() << "systemd is not installed";
@@ -144,8 +144,6 @@ TEST_F(TimeTravelNightlySystemd, FromBootToStopEveryFrameIsThere) {
   EXPECT_EQ(recorded(), sensors_.made());
   EXPECT_EQ(within({"journalctl", "-q", "-p", "warning", "-u", unit()}), "");
 }
-
-using TimeTravelNightlySystemd = TimeTravelSystemd;
 
 TEST_F(TimeTravelNightlySystemd, ItBeginsAnewWhenKilledAndWhenItHangs) {
   boot();

@@ -35,10 +35,10 @@ double number_of(const char* variable, double otherwise) {
   return text == nullptr ? otherwise : std::strtod(text, nullptr);
 }
 
-class TimeTravelWeek : public testing::Test {
+class TimeTravelNightlyWeek : public testing::Test {
  public:
   static constexpr int kAtOnce = 10;  // instants that are sent together
-  TimeTravelWeek() {
+  TimeTravelNightlyWeek() {
     std::ofstream{folder_ / "car.toml"}
         << "[blackbox]\nrotate_mib = 4\nkeep_mib = 24\nreserve_free_mib = 0\n";
     sensors_.motion = [this] { return simulation_.next().counts; };
@@ -175,22 +175,20 @@ class TimeTravelWeek : public testing::Test {
   int kills_{0};
 };
 
-using TimeTravelNightlyWeek = TimeTravelWeek;
-
 TEST_F(TimeTravelNightlyWeek, EveryFrameIsAccountedForWhateverHappens) {
   const double end_s = number_of("DAMPLINE_WEEK_HOURS", 0.02) * 3600.0;  // tests/bus/week: more
-  using Act = void (TimeTravelWeek::*)();
+  using Act = void (TimeTravelNightlyWeek::*)();
   struct Rule {
     const char* name;
     Act act;
     int times{0};
   };
-  std::array rules{Rule{"link", &TimeTravelWeek::link_goes},
-                   Rule{"clock", &TimeTravelWeek::clock_steps},
-                   Rule{"node restarts", &TimeTravelWeek::node_restarts},
-                   Rule{"frames astray", &TimeTravelWeek::frames_go_astray},
-                   Rule{"full disk", &TimeTravelWeek::disk_fills},
-                   Rule{"program stopped", &TimeTravelWeek::program_stops}};
+  std::array rules{Rule{"link", &TimeTravelNightlyWeek::link_goes},
+                   Rule{"clock", &TimeTravelNightlyWeek::clock_steps},
+                   Rule{"node restarts", &TimeTravelNightlyWeek::node_restarts},
+                   Rule{"frames astray", &TimeTravelNightlyWeek::frames_go_astray},
+                   Rule{"full disk", &TimeTravelNightlyWeek::disk_fills},
+                   Rule{"program stopped", &TimeTravelNightlyWeek::program_stops}};
   while (driven_s_ < end_s && !HasFailure()) {
     begin_life();
     const auto faults = static_cast<int>(between(2.0, 12.0));
