@@ -94,5 +94,36 @@ TEST(GroupedStore, ClearForgetsAllThatWasMerged) {
   });
 }
 
+/// Blocks of so many rows of each scale, all of whose columns are white and whose target is +-1.
+std::vector<PlainRow> rows_of_unit_targets(std::int64_t blocks, int rows_per_scale) {
+  auto rows = random_rows(blocks, rows_per_scale, 6);
+  for (PlainRow& r : rows) r.row[kTargetColumn] = r.row[kTargetColumn] > 0.0 ? 1.0 : -1.0;
+  return rows;
+}
+
+TEST(GroupedStore, WeighsABlockWhenEightRowsOfEachScaleCameBefore) {
+  for (const auto& [rows, blocks] : {std::pair{7, 1U}, std::pair{8, 2U}})
+    fed(rows_of_unit_targets(3, rows))
+        ->summed_up([blocks = blocks](const ScaleFactors& /*total*/, GroupedList entries) {
+          std::uint32_t held = 0;
+          for (const GroupedFactors* entry : entries) held += entry->blocks;
+          EXPECT_EQ(held, blocks);
+        });
+}
+
+// Where the rows are too few to tell: a row leaves a fiftieth of its target's power, which
+// becomes 1.
+TEST(GroupedStore, GuessesAFiftiethWhereRowsAreTooFew) {
+  fed(rows_of_unit_targets(2, 10))
+      ->summed_up([](const ScaleFactors& /*total*/, GroupedList entries) {
+        ASSERT_EQ(entries.size(), 1U);
+        for (std::size_t g = 0; g < kGroups; ++g) {
+          const double count = (g == 0 ? 4.0 : 1.0) * 10.0;
+          const double target = entries[0]->factor[g].column_norm(kTargetColumn);
+          EXPECT_NEAR(target * target / count, 50.0, 1e-3);
+        }
+      });
+}
+
 }  // namespace
 }  // namespace dampline

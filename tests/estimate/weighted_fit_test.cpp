@@ -206,6 +206,19 @@ TEST(WeightedFit, UsesAScaleFromFiveRowsAnUnknownOn) {
   EXPECT_EQ(fit.weight[4], 0.0);
 }
 
+TEST(WeightedFit, LeavesOutAScaleThatShowsNothing) {
+  Synthetic data{8};
+  ScaleFactors factors;
+  data.add(factors, 100);
+  factors.factor[2].clear();
+  const Fit fit = weighted_fit<kUnknowns>(factors, force_and_stiffness(), kAllScales);
+  const Fit masked =
+      weighted_fit<kUnknowns>(factors, force_and_stiffness(), {true, true, false, true, true});
+  ASSERT_TRUE(fit.ok);
+  EXPECT_EQ(fit.weight[2], 0.0);
+  EXPECT_EQ(fit.theta, masked.theta);
+}
+
 // sum n log s^2, sum w |r|^2 and sum w |t|^2, with r by the rows themselves.
 TEST(WeightedFit, StatesItsObjectiveAndWhatIsLeft) {
   Synthetic data{9};

@@ -447,5 +447,28 @@ TEST(TimingWatch, DiscardsSegmentsFromATickOn) {
   }
 }
 
+// The frame's lags count where they are of all blocks but two.
+TEST(TimingWatch, TwoBlocksMayLackTheLag) {
+  for (const int without : {0, 2, 3}) {
+    Blocks blocks;
+    blocks.show(without, {.has_lag = false});
+    blocks.show(12, {});
+    blocks.show(5, wheelset2_late(0.002));
+    EXPECT_EQ(blocks.speed_changes(), without > 2 ? 1U : 0U) << without;
+    ASSERT_EQ(blocks.faults().size(), without > 2 ? 0U : 1U) << without;
+  }
+}
+
+// Half of the blocks are as the one before: so little scatter makes a slow drift known while its
+// first blocks are all there is.
+TEST(TimingWatch, WhatGoesOnAlongALineIsADriftAndNoStep) {
+  for (const auto& late : {wheelset1_late, wheelset2_late}) {
+    Blocks blocks;
+    for (int i = 0; i < 10; ++i) blocks.show(1, late(0.0005 * (i / 2)));
+    ASSERT_EQ(blocks.faults().size(), 1U);
+    EXPECT_EQ(blocks.faults()[0].kind, FaultKind::kClockDrift);
+  }
+}
+
 }  // namespace
 }  // namespace dampline

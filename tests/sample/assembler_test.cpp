@@ -313,5 +313,25 @@ TEST(Assembler, BearsRandomFrames) {
   }
 }
 
+// A node that is switched on later: what the others sent before is no instant that lacks it.
+TEST(Assembler, BeginsWithTheFirstInstantOfAllChannels) {
+  for (std::size_t late = 0; late < kChannels; ++late) {
+    for (const std::int64_t shift : {0, 100}) {
+      const Nodes nodes;
+      AssemblerConfig config = nodes.config();
+      config.most_missing = 3;
+      SampleAssembler assembler{config};
+      std::vector<CanFrame> frames;
+      for (std::int64_t tick = 0; tick < 300; ++tick)
+        for (std::size_t c = 0; c < kChannels; ++c)
+          if (c != late || tick >= 3) frames.push_back(nodes.frame(c, tick, 0, c == 1 ? shift : 0));
+      const auto samples = assemble(assembler, frames);
+      EXPECT_EQ(samples.size(), 297U) << late;
+      EXPECT_EQ(wrong_samples(samples, 3), 0);
+      EXPECT_EQ(assembler.counts().incomplete, 0U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dampline

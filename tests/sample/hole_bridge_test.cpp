@@ -221,5 +221,31 @@ TEST(HoleBridge, SaysWhatNoiseItMakesOfAllSamples) {
   EXPECT_EQ(figures.error_mps2[1], 0.0);
 }
 
+/// What is put in at a place of a tone that no smooth curve follows, off the truth by this; these
+/// samples never came.
+double off_a_tone(std::size_t place, const std::vector<std::size_t>& lost = {}) {
+  const auto truth = [](std::size_t i) { return std::sin(1.9 * static_cast<double>(i)); };
+  std::vector<Sample> in;
+  for (std::size_t i = 0; i < place + 60; ++i) {
+    if (std::find(lost.begin(), lost.end(), i) != lost.end()) continue;
+    const double value = i == place ? kNothing : truth(i);
+    in.push_back({.tick = static_cast<std::int64_t>(i), .accel_mps2 = {value, 0.1, 0.2}});
+  }
+  return std::abs(bridged(in).samples[place].accel_mps2[0] - truth(place));
+}
+
+TEST(HoleBridge, LearnsFrom256SamplesOn) {
+  for (const std::size_t place : {20U, 200U, 255U}) EXPECT_GT(off_a_tone(place), 0.1) << place;
+  for (const std::size_t place : {256U, 600U}) EXPECT_LT(off_a_tone(place), 0.03) << place;
+}
+
+// Another hole a little later does not spoil it, though its samples are there by then.
+TEST(HoleBridge, LearnsFromWhatWasBefore) {
+  for (const std::size_t place : {600U, 1111U})
+    for (const std::size_t last : {20U, 21U, 22U})
+      EXPECT_LT(off_a_tone(place, {place + last - 2, place + last - 1, place + last}), 0.03)
+          << place << ", " << last;
+}
+
 }  // namespace
 }  // namespace dampline
