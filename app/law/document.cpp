@@ -152,18 +152,41 @@ Json unknown_json(const Document& d, std::size_t i) {
   return out;
 }
 
-Json initial_json(const Document& d) {
-  const std::size_t count = memories_of(d.law).size();
+Json initial_json(const Law& law, const State& initial) {
+  const std::size_t count = memories_of(law).size();
   Json memory = Json::array();
   Json slip = Json::array();
   for (std::size_t m = 0; m < std::min(count, kMostMemories); ++m) {
-    memory.push_back(d.initial.memory_m[m]);
-    slip.push_back(d.initial.slip_m[m]);
+    memory.push_back(initial.memory_m[m]);
+    slip.push_back(initial.slip_m[m]);
   }
-  return {{"deflection_m", d.initial.deflection_m},
-          {"velocity_mps", d.initial.velocity_mps},
+  return {{"deflection_m", initial.deflection_m},
+          {"velocity_mps", initial.velocity_mps},
           {"memory_m", std::move(memory)},
           {"slip_m", std::move(slip)}};
+}
+
+Json covariance_json(const Eigen::MatrixXd& covariance) {
+  Json out = Json::array();
+  for (Eigen::Index r = 0; r < covariance.rows(); ++r)
+    out.push_back(numbers(covariance.row(r).transpose()));
+  return out;
+}
+
+Json unknowns_json(const Document& d) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < d.unknowns.size(); ++i) out.push_back(unknown_json(d, i));
+  return out;
+}
+
+Json free_run_json(const Document& d) {
+  if (!d.free_run) return nullptr;
+  const Document moves = d.for_free_run();
+  return {{"unknowns", unknowns_json(moves)},
+          {"covariance", covariance_json(moves.covariance)},
+          {"initial_state", initial_json(moves.law, moves.initial)},
+          {"record_sha256", d.free_run->record_sha256},
+          {"residual_m", moves.residual_m}};
 }
 
 Json known(double value) { return value > 0.0 ? Json(value) : Json(nullptr); }
@@ -192,6 +215,10 @@ class Reader {
   /// Of a member that files of earlier versions do not have.
   [[nodiscard]] double number_if_there(const char* key) const {
     return json_.contains(key) ? number_or_0(key) : 0.0;
+  }
+  /// It is there, and not null.
+  [[nodiscard]] bool has(const char* key) const {
+    return json_.contains(key) && !json_.at(key).is_null();
   }
   [[nodiscard]] Reader in(const char* key) const {
     return {get<Json>(key), fmt::format("{}: {}", place_, key)};
@@ -270,6 +297,23 @@ State read_initial(const Reader& from) {
   return out;
 }
 
+/// Absent in files of earlier versions.
+std::optional<FreeRunFigures> read_free_run(const Reader& all, const Document& law) {
+  if (!all.has("free_run")) return std::nullopt;
+  const Reader from = all.in("free_run");
+  FreeRunFigures out;
+  const std::vector<Reader> unknowns = from.list("unknowns", law.unknowns.size());
+  if (unknowns.size() != law.unknowns.size()) from.fail("unknowns: expected those of the law");
+  out.values.resize(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    out.values[static_cast<Eigen::Index>(i)] = unknowns[i].number("value");
+  out.covariance = read_covariance(from, unknowns.size());
+  out.initial = read_initial(from.in("initial_state"));
+  out.record_sha256 = from.get<std::string>("record_sha256");
+  out.residual_m = from.number("residual_m");
+  return out;
+}
+
 }  // namespace
 
 const TermText& text_of(Kind kind) noexcept {
@@ -301,6 +345,17 @@ Law Document::with(const Eigen::VectorXd& values) const {
   return out;
 }
 
+Document Document::for_free_run() const {
+  Document out = *this;
+  if (!free_run) return out;
+  out.law = with(free_run->values);
+  out.covariance = free_run->covariance;
+  out.initial = free_run->initial;
+  out.residual_m = free_run->residual_m;
+  out.free_run.reset();
+  return out;
+}
+
 double Document::std_of(Eigen::Index i) const { return std::sqrt(std::max(covariance(i, i), 0.0)); }
 
 std::string Document::equation() const {
@@ -316,11 +371,6 @@ std::string Document::equation() const {
 std::string to_json(const Document& d) {
   Json terms = Json::array();
   for (std::size_t i = 0; i < d.law.terms.size(); ++i) terms.push_back(term_json(d, i));
-  Json unknowns = Json::array();
-  for (std::size_t i = 0; i < d.unknowns.size(); ++i) unknowns.push_back(unknown_json(d, i));
-  Json covariance = Json::array();
-  for (Eigen::Index r = 0; r < d.covariance.rows(); ++r)
-    covariance.push_back(numbers(d.covariance.row(r).transpose()));
   return json_text({{"schema", kSchema},
                     {"version", version()},
                     {"record", d.record},
@@ -328,9 +378,10 @@ std::string to_json(const Document& d) {
                     {"equation", d.equation()},
                     {"mass_kg", known(d.law.mass_kg)},
                     {"terms", std::move(terms)},
-                    {"unknowns", std::move(unknowns)},
-                    {"covariance", std::move(covariance)},
-                    {"initial_state", initial_json(d)},
+                    {"unknowns", unknowns_json(d)},
+                    {"covariance", covariance_json(d.covariance)},
+                    {"initial_state", initial_json(d.law, d.initial)},
+                    {"free_run", free_run_json(d)},
                     {"deflection_zero_m", d.zero_m},
                     {"force_sign", d.force_sign},
                     {"sample_rate_hz", d.sample_rate_hz},
@@ -360,6 +411,7 @@ Document read_document(std::string_view text, const std::string& origin) {
     out.unknowns.push_back(read_unknown(unknown, out.law.terms.size()));
   out.covariance = read_covariance(from, out.unknowns.size());
   out.initial = read_initial(from.in("initial_state"));
+  out.free_run = read_free_run(from, out);
   out.zero_m = from.number("deflection_zero_m");
   out.force_sign = from.number("force_sign") < 0.0 ? -1.0 : 1.0;
   out.sample_rate_hz = from.number("sample_rate_hz");

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,6 +27,16 @@ enum class Subject : std::uint8_t {
   kTruck        ///< m y'' + k y + F = -m (z_1'' + z_2''), m half of the moving mass
 };
 
+/// Figures of a law for a free run, where it misses something and those of its equations, which
+/// leave least of the force, are not the best for its motion.
+struct FreeRunFigures {
+  Eigen::VectorXd values;      ///< of the law's unknowns, in their order
+  Eigen::MatrixXd covariance;  ///< of the values
+  State initial;               ///< found with them, of one record:
+  std::string record_sha256{};
+  double residual_m{0.0};  ///< rms, of the motion of that record
+};
+
 /// A law with all that is needed to move it again: `law.json`, schema dampline.law/1.
 struct Document {
   Subject subject{Subject::kDamper};
@@ -45,12 +56,15 @@ struct Document {
   /// Of the force that moved the mass and that no term has, N^2/Hz, below filter_hz. 0: what is
   /// left is no more than noise, or that was not worked out.
   double lacking_n2_hz{0.0};
+  std::optional<FreeRunFigures> free_run;
   std::vector<std::string> not_in_it;  ///< effects that were found and are no term, a sentence each
   std::string record;
 
   [[nodiscard]] Eigen::VectorXd values() const;
   /// The law with other numbers; what must be above 0 stays there.
   [[nodiscard]] Law with(const Eigen::VectorXd& values) const;
+  /// The law by which a free run is best.
+  [[nodiscard]] Document for_free_run() const;
   /// The equation of motion with the unknowns' names: "m x'' + c1 x + c2 sign(v) = f".
   [[nodiscard]] std::string equation() const;
   /// Deviation of unknown i.

@@ -430,6 +430,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   out.density_ratio = density_ratio_of(parts);
   out.segment_s = static_cast<double>(length_) * interval_s();
   out.segments = segments_.size();
+  out.start = segments_.front().start;
   return out;
 }
 

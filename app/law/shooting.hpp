@@ -36,7 +36,7 @@ struct Shot {
   double segment_s{0.0};
   double first_segment_s{0.0};  ///< the shortest that were followed
   std::size_t segments{0};
-  State start;  ///< of the first segment, by follow()
+  State start;  ///< of the first segment
 };
 
 /// How far segments grow: to the whole record, or not at all, which is quick and less certain.

@@ -13,6 +13,7 @@
 #include "app/diagnosis/rig/series.hpp"
 #include "app/error.hpp"
 #include "app/law/start.hpp"
+#include "app/run/provenance.hpp"
 #include "drivers/bytes/spool.hpp"
 #include "drivers/record/rows.hpp"
 
@@ -144,6 +145,16 @@ void check_movable(const law::Document& document) {
         "memory"};
 }
 
+std::string own_figures_text(const law::Document& document) {
+  std::string out = "By the law's figures for a free run:";
+  for (std::size_t i = 0; i < document.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    out += fmt::format("{} {} {:.4g} ± {:.2g}", i == 0 ? "" : ",", document.unknowns[i].name,
+                       document.values()[at], document.std_of(at));
+  }
+  return out + ".";
+}
+
 /// Deviation of the motion that comes of a force which the law lacks, as dense as in its own record
 /// up to the corner that it was seen through: the scatter of some drawn ones.
 Eigen::VectorXd walk_of(const law::Document& document, const law::Input& input,
@@ -203,15 +214,17 @@ Prediction predict_force(const law::Document& document, const Config& config,
   return out;
 }
 
-Prediction predict_motion(const law::Document& document, const Config& config,
+Prediction predict_motion(const law::Document& explained, const Config& config,
                           const PredictOptions& options) {
-  check_movable(document);
+  check_movable(explained);
+  const law::Document document = explained.for_free_run();
   const auto file = drivers::spooled(options.input);
   if (!file) throw RunError{file.error_text()};
   const std::string& path = file.value();
   const bool measured = holds_deflection(path, config);
   rig::Series series = measured ? rig::read_series(path, config, options.skip_bad_lines)
                                 : read_force(path, config, options.skip_bad_lines);
+  series.record = options.input;
   if (series.has_gap)
     throw RunError{
         fmt::format("{}: has gaps or values that are no number: a force that moves a "
@@ -223,8 +236,11 @@ Prediction predict_motion(const law::Document& document, const Config& config,
   if (measured) {
     deflection_m = series.deflection_m.array() + series.zero_m;
     const Eigen::VectorXd from_zero_m = deflection_m.array() - document.zero_m;
-    start = law::start_of(document.law, {series.force_n, from_zero_m, series.velocity_mps,
-                                         series.interval_s, series.noise_m});
+    const bool is_own =
+        explained.free_run && explained.free_run->record_sha256 == describe_record(path).sha256;
+    start = is_own ? document.initial
+                   : law::start_of(document.law, {series.force_n, from_zero_m, series.velocity_mps,
+                                                  series.interval_s, series.noise_m});
   }
   const law::Input input{series.force_n, series.interval_s};
   const Eigen::Index count = input.size();
@@ -239,6 +255,7 @@ Prediction predict_motion(const law::Document& document, const Config& config,
   if (motion.size() == 0)
     throw RunError{fmt::format("{}: the law runs away under this force", options.input)};
   Prediction out = begun("motion from force", series, document);
+  if (explained.free_run) out.notes.push_back(own_figures_text(document));
   if (!measured) out.notes.emplace_back("It starts at rest: the record holds no deflection_m.");
   out.columns.push_back({"time_s", series.time_s});
   Eigen::VectorXd std = deviation_of(document, motion_of, 2 * count);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/diagnosis/rig/explain.hpp"
+#include "app/predict/rig.hpp"
 #include "tests/drivers/temporary_file.hpp"
 #include "tests/shared_data.hpp"
 
@@ -64,6 +65,11 @@ TEST(MeasuredDamperNightly, LacksTheMemoryOfItsReversals) {
   EXPECT_NEAR(found.validation[1].reference_rrse, 0.794, 0.001);
 }
 
+double free_run_error_m(const law::Document& law, const std::string& record) {
+  const Prediction moved = predict_motion(law, example("emps_explain.toml"), {record, false});
+  return moved.errors.at(0).rms;
+}
+
 /// The lines of both halves of a record, each with its header.
 std::pair<std::string, std::string> halves_of(const std::filesystem::path& file) {
   std::ifstream in{file};
@@ -96,6 +102,27 @@ TEST(MeasuredEmps, LacksTheDirectionOfItsFriction) {
   ASSERT_EQ(found.steps[0].parameters.size(), 2U);
   EXPECT_NEAR(found.steps[0].parameters[0].value, 166.2, 4.0);
   EXPECT_NEAR(found.steps[0].parameters[1].value, 240.1, 4.0);
+  // The half that was not fitted by its force alone: 7.6 mm by the equations' figures.
+  ASSERT_TRUE(found.final.law.free_run);
+  EXPECT_LE(free_run_error_m(found.final.law, held_out.path()), 5.5e-3);
+}
+
+TEST(MeasuredEmps, MovesByFiguresOfItsOwn) {
+  const auto file = dampline::test::shared_data() / "emps/emps_train.csv";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no emps in the shared data";
+  rig::ExplainOptions options;
+  options.records.push_back(file.string());
+  law::Document law = rig::explain(example("emps_explain.toml"), options).final.law;
+  ASSERT_TRUE(law.free_run);
+  // Output error with its own stick and slip, the same structure and a free start: 1.52 mm.
+  EXPECT_NEAR(law.free_run->residual_m, 1.52e-3, 0.02e-3);
+  EXPECT_NEAR(free_run_error_m(law, file.string()), law.free_run->residual_m, 1e-6);
+  const double published_kg = 95.1;
+  EXPECT_NEAR(law.law.mass_kg, published_kg, 0.5);
+  law::Document moves = law.for_free_run();
+  EXPECT_NEAR(moves.law.mass_kg, published_kg, 2.0 * moves.std_of(0) + 2.0 * moves.std_of(1));
+  law.free_run.reset();
+  EXPECT_GT(free_run_error_m(law, file.string()), 2.5e-3);
 }
 
 }  // namespace

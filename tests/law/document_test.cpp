@@ -56,6 +56,34 @@ TEST(Document, ComesBackFromItsFile) {
   EXPECT_EQ(read.covariance, law.covariance);
 }
 
+TEST(Document, BringsItsFiguresForAFreeRun) {
+  Document law = example();
+  EXPECT_EQ(law.for_free_run().values(), law.values());
+  Eigen::VectorXd values = law.values();
+  values[0] = 2.1;
+  values[6] = 2e-3;
+  State start{2e-3, 0.1};
+  start.memory_m[0] = 1e-4;
+  law.free_run = {values, 4.0 * law.covariance, start, "0a1b", 3e-6};
+  const std::string text = to_json(law);
+  const Document read = read_document(text, "law.json");
+  EXPECT_EQ(to_json(read), text);
+  EXPECT_EQ(read.values(), law.values());
+  ASSERT_TRUE(read.free_run);
+  EXPECT_EQ(read.free_run->record_sha256, "0a1b");
+  const Document moves = read.for_free_run();
+  EXPECT_EQ(moves.values(), values);
+  EXPECT_EQ(moves.covariance, 4.0 * law.covariance);
+  EXPECT_EQ(moves.initial.memory_m[0], 1e-4);
+  EXPECT_EQ(moves.residual_m, 3e-6);
+  json one_less = json::parse(text);
+  one_less["free_run"]["unknowns"].erase(0);
+  EXPECT_THROW((void)read_document(one_less.dump(), "law.json"), RunError);
+  json earlier = json::parse(text);
+  earlier.erase("free_run");
+  EXPECT_FALSE(read_document(earlier.dump(), "law.json").free_run);
+}
+
 TEST(Document, SaysTheEquation) {
   EXPECT_EQ(example().equation(),
             "m x'' + c1 v + c2 x + c3 sign(v) exp(-|v| / b3) + "

@@ -125,7 +125,8 @@ Json free_run_json(const FreeRunError& f) {
           {"density_ratio", f.density_ratio ? Json(*f.density_ratio) : Json(nullptr)},
           {"followed", f.followed},
           {"agrees_with_equations", f.agree},
-          {"refined", f.by_motion}};
+          {"refined", f.by_motion},
+          {"has_own_figures", f.has_figures}};
 }
 
 const char* symmetry_of(const Signature& s) {
@@ -224,8 +225,10 @@ std::string floor_text(const Explanation& e) {
 
 std::string free_run_text(const FreeRunError& f) {
   if (f.segments == 0) return "";
-  const char* kept =
-      f.by_motion ? "the law is refined by it" : "the equations are at least as certain, and stay";
+  const char* kept = f.by_motion ? "the law is refined by it"
+                     : f.has_figures
+                         ? "the equations' figures stay, but predict --free-run has these"
+                         : "the equations are at least as certain, and stay";
   std::string text = fmt::format(
       "free run of {} x {:.3g} s by the force alone: off by {:.4g} m rms, held-out nmse {} ({:.4g} "
       "by the equations); the deflection's noise is {:.2g} m",

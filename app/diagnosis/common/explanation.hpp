@@ -64,9 +64,10 @@ struct FreeRunError {
   double noise_m{0.0};            ///< of the deflection, rms
   /// Density of what is left where the motion is, over that beside it; 1: noise. Absent: unknown.
   std::optional<double> density_ratio{};
-  bool followed{false};   ///< no more than noise is left
-  bool agree{false};      ///< both within their deviations
-  bool by_motion{false};  ///< the law has the motion's
+  bool followed{false};     ///< no more than noise is left
+  bool agree{false};        ///< both within their deviations
+  bool by_motion{false};    ///< the law has the motion's
+  bool has_figures{false};  ///< it has not, but a free run takes them
 };
 
 /// What a diagnosis found, of a truck or a rig: explanation.json, terminal and page are made of it.

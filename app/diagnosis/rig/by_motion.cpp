@@ -323,6 +323,18 @@ void correct_by_own_motion(const std::vector<Series>& records, const Scale& scal
   joint.covariance += error * error.transpose();
 }
 
+/// Where the equations' figures stay: those by which the records' whole motion is left less, held
+/// out.
+void keep_for_free_run(Moved& moved, std::size_t records) {
+  FreeRunError& left = moved.model.free_run;
+  const bool better = left.nmse_of_motion < kMovesBetter * left.nmse_of_equations;
+  if (left.followed || !better || moved.shot.segments != records) return;
+  left.has_figures = true;
+  const Eigen::VectorXd apart = moved.shot.unknowns - unknowns_of(moved.model, moved.joint);
+  moved.model.for_free_run = {moved.shot.unknowns,
+                              moved.shot.covariance + apart * apart.transpose(), moved.shot.start};
+}
+
 }  // namespace
 
 Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model,
@@ -381,6 +393,7 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
     if (!best.model.free_run.followed) best.joint.covariance += apart * apart.transpose();
     best.joint.half_difference.setZero();
   } else {
+    keep_for_free_run(best, records.size());
     correct_by_own_motion(records, scale, best.model, best.joint);
   }
   model = std::move(best.model);

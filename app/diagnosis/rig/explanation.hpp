@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +20,14 @@ struct Change {
   int side{0};     ///< of the force: 1 or -1; 0: both
 };
 
+/// Figures by which a law that misses something moves as its record does, where those of its
+/// equations leave less of the force: unknowns of the joint fit.
+struct ForFreeRun {
+  Eigen::VectorXd unknowns;
+  Eigen::MatrixXd covariance;
+  law::State start;  ///< at the first sample of the first record
+};
+
 /// A model of the force: which columns, their coefficients.
 struct Model {
   std::vector<std::string> terms;
@@ -32,6 +42,7 @@ struct Model {
   double skew_s{0.0};           ///< the force is late by this
   Mode path;                    ///< that the force passes before it is measured
   FreeRunError free_run;
+  std::optional<ForFreeRun> for_free_run;
   law::Document law;              ///< of a final model: law.json
   double floor_nmse{0.0};         ///< what the law leaves of its own surrogate; 0: not known
   double floor_noise_share{0.0};  ///< of it, what the noise of the force makes

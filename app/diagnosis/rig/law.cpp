@@ -8,6 +8,7 @@
 
 #include "app/diagnosis/rig/thresholds.hpp"
 #include "app/law/start.hpp"
+#include "app/run/provenance.hpp"
 
 namespace dampline::app::rig {
 namespace {
@@ -98,6 +99,15 @@ double density_below(double corner_hz, const Eigen::VectorXd& force_n, double in
   return 2.0 * static_cast<double>(block) * interval_s * median_of(squares) / kMedianOfSquare;
 }
 
+/// What the law's motion from its initial state leaves of the record's.
+double motion_left(const law::Document& law, const Series& series) {
+  const law::Course course =
+      law::move(law.law, law::Input{series.force_n, series.interval_s}, law.initial);
+  if (!course.whole) return 0.0;
+  return std::sqrt((course.deflection_m - series.deflection_m).squaredNorm() /
+                   static_cast<double>(series.size()));
+}
+
 }  // namespace
 
 bool is_sharp(const Regressor& c, const Scale& scale) {
@@ -146,12 +156,9 @@ law::Document document_of(const Model& model, const Joint& joint, const Scale& s
   const Eigen::MatrixXd all = joint.ok ? widened(joint.covariance, joint.half_difference)
                                        : widened(model.fit.covariance, model.fit.half_difference);
   out.unknowns = places.unknowns;
-  const auto n = static_cast<Eigen::Index>(places.at.size());
-  out.covariance.resize(n, n);
-  for (Eigen::Index r = 0; r < n; ++r)
-    for (Eigen::Index c = 0; c < n; ++c)
-      out.covariance(r, c) =
-          all(places.at[static_cast<std::size_t>(r)], places.at[static_cast<std::size_t>(c)]);
+  out.covariance = all(places.at, places.at);
+  if (const auto& own = model.for_free_run)
+    out.free_run = {own->unknowns(places.at), own->covariance(places.at, places.at), own->start};
   const bool filtered = is_filtered(model.columns);
   out.subject = filtered ? law::Subject::kDrivenMass : law::Subject::kDamper;
   out.not_in_it = left_out_of(model);
@@ -173,13 +180,13 @@ void measure_left(const Model& model, const Series& series, law::Document& out) 
   if (series.size() < 2) return;
   out.initial = law::start_of(out.law, {series.force_n, series.deflection_m, series.velocity_mps,
                                         series.interval_s, series.noise_m});
+  out.residual_m = motion_left(out, series);
+  if (out.free_run) {
+    out.free_run->record_sha256 = describe_record(series.record).sha256;
+    out.free_run->residual_m = motion_left(out.for_free_run(), series);
+  }
   if (model.free_run.segments > 0 && !model.free_run.followed)
     out.lacking_n2_hz = density_below(out.filter_hz, left_n, series.interval_s);
-  const law::Input input{series.force_n, series.interval_s};
-  const law::Course course = law::move(out.law, input, out.initial);
-  if (course.whole)
-    out.residual_m = std::sqrt((course.deflection_m - series.deflection_m).squaredNorm() /
-                               static_cast<double>(series.size()));
 }
 
 std::vector<Regressor> columns_of(const law::Document& document) {

@@ -100,7 +100,7 @@ inline constexpr double kMisses = 1e-3;      // nmse of the motion: the law is n
 inline constexpr double kOtherForm = 0.999;  // of the squares left: another form of an effect
 inline constexpr double kPlainer = 1.001;    // the same, for one with a figure less
 inline constexpr double kMovesFarBetter = 0.1;  // the same, where more than noise is left
-inline constexpr double kMovesBetter = 0.8;  // of the squares left: it agrees, and is better still
+inline constexpr double kMovesBetter = 0.8;  // of the squares left: the motion's figures are better
 inline constexpr double kOfTheirOwn =
     0.3;  // of what is left: the equations leave it of the law's own motion
 inline constexpr int kCorrections = 4;
