@@ -116,9 +116,12 @@ constexpr double kLeastShakingInGMps2 = 0.1;
 
 Magnitudes magnitudes_of(const TruckView& view, const Config& config) {
   constexpr double kGravityMps2 = 9.80665;
-  return {view.wheelset_mps2, kGravityMps2 * config.car.moving_mass_kg,
-          view.faults.frame_follow.usual, view.faults.misplacement.difference,
-          view.faults.misplacement.difference_share};
+  return {view.wheelset_mps2,
+          kGravityMps2 * config.car.moving_mass_kg,
+          view.faults.frame_follow.usual,
+          view.faults.misplacement.difference,
+          view.faults.misplacement.difference_share,
+          config.input.anti_alias.corner_hz == 0.0};
 }
 
 DataFaults faults_of(const TruckView& view, double nominal_hz) {

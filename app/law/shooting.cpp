@@ -94,6 +94,7 @@ class Shooting {
   bool descend(VectorXd& unknowns, double enough, double& squares);
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
   [[nodiscard]] std::optional<double> density_ratio_of(const std::vector<Linear>& parts) const;
+  [[nodiscard]] Shot shot_of(const VectorXd& unknowns, double squares) const;
   Shot judge(const VectorXd& unknowns, double squares);
 
   const LawOf& law_of_;
@@ -401,16 +402,29 @@ std::optional<double> Shooting::density_ratio_of(const std::vector<Linear>& part
   return spectra.density_ratio();
 }
 
-Shot Shooting::judge(const VectorXd& unknowns, double squares) {
+/// Before anything is known of its deviations.
+Shot Shooting::shot_of(const VectorXd& unknowns, double squares) const {
   Shot out;
+  out.ok = std::isfinite(squares);
+  out.unknowns = unknowns;
+  out.nmse = out.held_out_nmse = squares / variance_m2_;
+  out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
+  out.segment_s = static_cast<double>(length_) * interval_s();
+  out.segments = segments_.size();
+  out.start = segments_.front().start;
+  return out;
+}
+
+Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   std::vector<Linear> parts;
-  if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return out;
+  if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return {};
   const Index p = unknowns.size();
   std::vector<Linear> clean;
   clean.reserve(parts.size());
   for (const Linear& each : parts) clean.push_back(beside_state(each));
   const BlockFit fit{blocks_of(clean)};
-  if (!fit.ok()) return out;
+  if (!fit.ok()) return {};
+  Shot out = shot_of(unknowns, squares);
   out.covariance = fit.covariance(static_cast<double>(samples_ - p) -
                                   2.0 * static_cast<double>(segments_.size()));
   // Steps twice as fine would go this much farther.
@@ -422,15 +436,8 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
     const VectorXd by = fit.solve(gradient);
     out.covariance += by * by.transpose();
   }
-  out.ok = true;
-  out.unknowns = unknowns;
-  out.nmse = squares / variance_m2_;
   out.held_out_nmse = fit.held_out_squares() / variance_m2_;
-  out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
   out.density_ratio = density_ratio_of(parts);
-  out.segment_s = static_cast<double>(length_) * interval_s();
-  out.segments = segments_.size();
-  out.start = segments_.front().start;
   return out;
 }
 
@@ -472,18 +479,9 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
 }
 
 Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
-  Shot out;
   cut(static_cast<Index>(std::lround(segment_s / interval_s())));
-  if (!settle(unknowns)) return out;
-  const double squares = squares_of(unknowns, segments_);
-  out.ok = std::isfinite(squares);
-  out.unknowns = unknowns;
-  out.nmse = out.held_out_nmse = squares / variance_m2_;
-  out.residual_m = std::sqrt(squares / static_cast<double>(samples_));
-  out.segment_s = segment_s;
-  out.segments = segments_.size();
-  out.start = segments_.front().start;
-  return out;
+  if (!settle(unknowns)) return {};
+  return shot_of(unknowns, squares_of(unknowns, segments_));
 }
 
 }  // namespace

@@ -223,6 +223,7 @@ struct Magnitudes {
   /// of what their mean leaves of its power; 0: not known.
   double pitch{0.0};
   double pitch_share{0.0};
+  bool is_unfiltered{false};  ///< no low pass is declared: none, or none that is known
 };
 
 /// What identify says of a record that an explanation added to.

@@ -29,6 +29,7 @@ constexpr double kNothingFitted = 0.8;  // of the variance, left
 constexpr double kSure = 3.0;           // deviations
 constexpr double kFallsWithin = 0.5;    // of the rms velocity, of friction that falls
 constexpr double kWidestShare = 0.7;    // of the rms velocity, of a law whose level is seen
+constexpr double kFoldedShare = 0.25;   // of the rms velocity, of a law that folding widens
 constexpr double kViscousShare = 0.03;  // of dry friction at the rms velocity
 constexpr double kViscousSigmas = 5.0;
 constexpr double kLeastFriction = 0.01;  // of the weight
@@ -127,7 +128,16 @@ void judge_fall(const RunResult& result, Reasons& out) {
 
 void judge_width(const RunResult& result, Reasons& out) {
   const std::optional<double> share = result.fit.law_width_share;
-  if (!share || *share <= kWidestShare) return;
+  if (!share) return;
+  if (result.magnitudes && result.magnitudes->is_unfiltered && *share > kFoldedShare)
+    out.emplace_back(
+        Trust::kModelIncomplete,
+        fmt::format("The law is {:.2g} times as wide as the rms velocity, and no low pass is "
+                    "declared (corner_hz = 0): without one, what is faster than half the sample "
+                    "rate is folded into the motion, and the level comes out some percent too "
+                    "high.",
+                    *share));
+  if (*share <= kWidestShare) return;
   out.emplace_back(
       Trust::kModelIncomplete,
       fmt::format("The law is {:.2g} times as wide as the rms velocity: the motion hardly leaves "

@@ -142,6 +142,18 @@ TEST(PlainSensorsLowPass, IsNamedByIdentifyWhereItWouldTrustTheLevel) {
   }
 }
 
+/// What is folded makes the level 3 to 5 % high there, which its deviation does not hold.
+TEST(PlainSensorsLowPass, IsMissedWhereThereIsNone) {
+  for (const double rate_hz : {500.0, 1000.0}) {
+    const RunResult result = test::identified_from(
+        kPlainTrucks.back(), {.rate_hz = rate_hz, .corner_hz = 0.0}, 120.0, 9110);
+    EXPECT_EQ(result.trust, Trust::kModelIncomplete) << rate_hz;
+    ASSERT_FALSE(result.trust_reasons.empty());
+    EXPECT_NE(result.trust_reasons[0].find("folded into the motion"), std::string::npos) << rate_hz;
+    EXPECT_TRUE(result.std_is_lower_bound);
+  }
+}
+
 struct Delays {
   const char* name;
   std::array<double, kChannels> late_s;  ///< taken so much later than the record says
