@@ -60,6 +60,12 @@ TEST(LawColumns, SegmentsAndWidthsAreThoseOfEveryState) {
                                       0.008, 0.011}));
 }
 
+// As state_format.md says: ten widths, eight ramps, spring, damping and target.
+TEST(LawColumns, AreFollowedByThreeOthersInARow) {
+  EXPECT_EQ(static_cast<int>(LawColumns::kCount), 18);
+  EXPECT_EQ(kRowColumns, 21);
+}
+
 TEST(LawColumns, TheWidthsIncrease) {
   for (std::size_t i = 1; i < kLawWidths; ++i) EXPECT_GT(kLawWidthMps[i], kLawWidthMps[i - 1]);
 }

@@ -42,6 +42,52 @@ double grown(const Estimate& to, const Estimate& from) {
   return std::sqrt(std::max(to.std * to.std - from.std * from.std, 0.0)) / to.value;
 }
 
+/// Information of all windows but those of one length.
+std::unique_ptr<Statistics> without_scale(std::size_t scale) {
+  auto out = std::make_unique<Statistics>(of_a_ride());
+  const auto leave = [&](ScaleFactors& f) {
+    f.factor[scale].clear();
+    f.rows[scale] = 0.0;
+  };
+  leave(out->total);
+  for (ScaleFactors& f : out->entries) leave(f);
+  return out;
+}
+
+// The stiffness is that of the four longest lengths.
+TEST(SummaryRules, NothingIsValidWithoutLongWindows) {
+  auto only_short = std::make_unique<Statistics>(of_a_ride());
+  for (std::size_t s = 0; s + 1 < kScales; ++s) {
+    EXPECT_TRUE(summarise(*without_scale(s), {.moving_mass_kg = 1000.0}).valid) << s;
+    for (ScaleFactors* f : {&only_short->total}) f->factor[s].clear();
+  }
+  const Snapshot none = summarise(*only_short, {.moving_mass_kg = 1000.0});
+  EXPECT_FALSE(none.valid);
+  EXPECT_EQ(none.coulomb_n.value, 0.0);
+}
+
+// Of eight rides of a minute.
+TEST(SummaryRules, TheWidthsDeviationIsThatOfItsScatter) {
+  double sum = 0.0, squares = 0.0, stated = 0.0;
+  constexpr int kRides = 8;
+  for (int ride = 0; ride < kRides; ++ride) {
+    const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
+    sim::Simulation simulation{
+        sim::reference_run(sim::Load::kLaden, 80.0, 100 + static_cast<std::uint64_t>(ride))};
+    for (int i = 0; i < 60 * sim::kSampleRateHz; ++i)
+      estimator->update(sim::to_sample(simulation.next()));
+    estimator->finish();
+    const Estimate width = estimator->snapshot().law_width_mps;
+    sum += width.value;
+    squares += width.value * width.value;
+    stated += width.std / kRides;
+  }
+  const double mean = sum / kRides;
+  const double scatter = std::sqrt((squares - kRides * mean * mean) / (kRides - 1));
+  EXPECT_GT(stated / scatter, 0.4) << stated << " " << scatter;
+  EXPECT_LT(stated / scatter, 2.5) << stated << " " << scatter;
+}
+
 TEST(SummaryRules, EveryForceIsThatOfTheMass) {
   const Snapshot one = with_share(0.05);
   const Snapshot ten = with_share(0.05, 10'000.0);

@@ -37,6 +37,11 @@ double integral(const H& h) {
   return sum;
 }
 
+TEST(GrowingWeight, GrowsByEInItsMemoryHoweverBrief) {
+  EXPECT_NEAR(GrowingWeight{0.5}.growth(), std::exp(2.0), 1e-12);
+  EXPECT_EQ(GrowingWeight{0.0}.growth(), 1.0);
+}
+
 TEST(Histogram, ChecksItsConfiguration) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(Fine::check(given(-1.0, 1.0)).ok());

@@ -69,7 +69,10 @@ TEST(JointHistogram, TwoHalvesMergeToTheWholeExactly) {
     whole.update(x, y);
     (i % 3 == 0 ? first : second).update(x, y);
   }
+  first.update(std::numeric_limits<double>::quiet_NaN(), 0.0);
+  second.update(0.0, std::numeric_limits<double>::infinity());
   ASSERT_TRUE(first.merge(second).ok());
+  EXPECT_EQ(first.not_finite(), 2U);
   EXPECT_EQ(first.share_outside(), whole.share_outside());
   for (std::size_t i = 0; i < 16; ++i) {
     for (std::size_t j = 0; j < 32; ++j) EXPECT_EQ(first.share(i, j), whole.share(i, j));

@@ -52,6 +52,22 @@ class SmallBox {
   std::vector<std::size_t> begins_;
 };
 
+// What a reader's buffer held before lies behind the end of a file that is longer.
+TEST(BlackboxDamage, ATornTailIsNotReadOnIntoWhatTheBufferHeldBefore) {
+  constexpr std::uint64_t kMany = 8'000;
+  const BoxFolder whole;
+  test::write_box(test::box_config(whole.path()), 0, kMany);
+  const std::string bytes = bytes_of(whole.file(1));
+  const BoxFolder torn;
+  std::filesystem::create_directories(torn.path());
+  for (std::size_t cut = 1; cut <= 120; ++cut) {
+    write_bytes(torn.file(1), bytes.substr(0, bytes.size() - cut));
+    const std::vector<std::uint64_t> numbers = read_box(torn.path()).numbers();
+    ASSERT_EQ(numbers, test::range(0, numbers.size())) << cut;
+    ASSERT_GE(numbers.size(), kMany - 6) << cut;
+  }
+}
+
 TEST(BlackboxDamage, NoneIsSeenInAWholeOne) {
   const SmallBox box;
   ASSERT_EQ(box.begins().size(), kRecords + 1);

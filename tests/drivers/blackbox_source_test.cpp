@@ -106,6 +106,7 @@ TEST(BlackboxSource, RestoresWhatTheLiveRunCounted) {
   EXPECT_EQ(health.restarts, 1U);
   EXPECT_EQ(health.clock_steps, 1U);
   EXPECT_EQ(health.dropped, 42U);
+  EXPECT_EQ(health.frames, 1U);
   EXPECT_EQ(health.error_frames, 1U);
   EXPECT_EQ(health.hardware_times, 1U);
   EXPECT_FALSE(health.link_up);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "drivers/blackbox/writer.hpp"
 #include "tests/blackbox.hpp"
@@ -70,7 +71,30 @@ TEST(BlackboxWriter, IsOnTheDiskWithinTheSyncInterval) {
   EXPECT_EQ(writer->health().syncs, begun + 1);
   writer->tick(2 * kSecondNs);  // nothing new
   EXPECT_EQ(writer->health().syncs, begun + 1);
-  EXPECT_EQ(read_box(folder.path()).frames.size(), 1U);
+  writer->write(numbered_frame(1));
+  writer->tick(5 * kSecondNs / 2);
+  EXPECT_EQ(writer->health().syncs, begun + 1) << "half a second after the last look";
+  writer->tick(3 * kSecondNs);
+  EXPECT_EQ(writer->health().syncs, begun + 2);
+  EXPECT_EQ(read_box(folder.path()).frames.size(), 2U);
+}
+
+// A service may have been started without a standard input.
+TEST(BlackboxWriter, WritesWhereItsFileIsDescriptor0) {
+  const BoxFolder folder;
+  const auto writer = open_box(test::box_config(folder.path()));
+  const int input = ::dup(STDIN_FILENO);
+  ::close(STDIN_FILENO);
+  writer->write(numbered_frame(0));
+  writer->tick(0);
+  writer->write(numbered_frame(1));
+  writer->close();
+  if (input >= 0) {
+    ::dup2(input, STDIN_FILENO);
+    ::close(input);
+  }
+  EXPECT_EQ(folder.files(), 1U);
+  EXPECT_EQ(read_box(folder.path()).numbers(), test::range(0, 2));
 }
 
 // The folder goes, and a file stands in its place until it can be made again.
@@ -97,6 +121,21 @@ TEST(BlackboxWriter, TriesToGoOnEveryRetryInterval) {
   writer->write(numbered_frame(2));
   writer->close();
   EXPECT_EQ(read_box(folder.path()).frames.size(), 1U);
+}
+
+TEST(BlackboxWriter, AFileGoesOnWhereTheLongestRecordJustFits) {
+  const BoxFolder measured;
+  test::write_box(test::box_config(measured.path()), 0, 99);
+  const BoxFolder folder;
+  auto config = test::box_config(folder.path());
+  config.rotate_bytes = std::filesystem::file_size(measured.file(1)) + kLongestRecord;
+  test::write_box(config, 0, 100);
+  EXPECT_EQ(folder.files(), 1U);
+  --config.rotate_bytes;
+  const BoxFolder shorter;
+  config.directory = shorter.path();
+  test::write_box(config, 0, 100);
+  EXPECT_EQ(shorter.files(), 2U);
 }
 
 TEST(BlackboxWriter, RotatesBySize) {

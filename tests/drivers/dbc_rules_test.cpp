@@ -178,6 +178,7 @@ TEST(DbcRules, AFloatIsOneByItsMessageAndName) {
   EXPECT_EQ(is_float("SIG_VALTYPE_ 2 S : 1;"), std::pair(false, false));
   EXPECT_EQ(is_float("SIG_VALTYPE_ 2147483649 S : 1;"), std::pair(false, false)) << "29 bits";
   EXPECT_EQ(is_float("SIG_VALTYPE_"), std::pair(false, false));
+  EXPECT_EQ(is_float("SIG_VALTYPE_ 1 S : ;"), std::pair(false, false)) << "without a type";
 }
 
 // Quotes that do not close on their line hide what follows until they do.
