@@ -144,6 +144,7 @@ std::string make_page(const RunResult& result, const Provenance& provenance,
   body += evidence_sections(result.evidence);
   body += section("Parameters", parameter_section(result)) +
           section("The model before", base_section(result));
+  body += section("The law as an equation", law_section(result));
   body += section("Terms", term_section(result));
   body += section("Other sets of terms", figure(plot_term_sets(result), "term-sets", kTermSetText) +
                                              term_set_section(result));

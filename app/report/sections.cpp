@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
 
+#include "app/law/document.hpp"
 #include "app/report/html.hpp"
 #include "app/report/phase_plot.hpp"
 #include "app/report/plots.hpp"
@@ -98,6 +100,99 @@ std::string parameter_section(const RunResult& result) {
 
 std::string base_section(const RunResult& result) {
   return result.base ? law_table(result.base->parameters, result.base->model) : "";
+}
+
+namespace {
+
+/// "a3 = a4" of an unknown that terms share.
+std::string names_of(const law::Unknown& u) {
+  if (u.terms.empty()) return u.name;
+  std::string out;
+  for (const std::size_t t : u.terms)
+    out += fmt::format("{}{}{}", out.empty() ? "" : " = ", u.name.front(), t + 1);
+  return out;
+}
+
+/// "a1", not that of "a12".
+bool is_in(const std::string& equation, const std::string& name) {
+  for (auto at = equation.find(name); at != std::string::npos; at = equation.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if (end == equation.size() || std::isdigit(static_cast<unsigned char>(equation[end])) == 0)
+      return true;
+  }
+  return false;
+}
+
+/// What the equation names, a in its u too, and nobody identified.
+std::string given_text(const law::Document& d) {
+  using Part = law::Unknown::Part;
+  std::vector<std::string> given;
+  const auto is_unknown = [&](Part part, std::size_t term) {
+    return std::any_of(d.unknowns.begin(), d.unknowns.end(), [&](const law::Unknown& u) {
+      return u.part == part && (part == Part::kMass ||
+                                std::find(u.terms.begin(), u.terms.end(), term) != u.terms.end());
+    });
+  };
+  const auto add = [&](const std::string& name, double value, const char* unit) {
+    const std::string equation = d.equation();
+    if (is_in(equation, name) || (name[0] == 'a' && is_in(equation, "u" + name.substr(1))))
+      given.push_back(fmt::format("{} = {}", name, quantity_text(value, 0.0, unit)));
+  };
+  if (d.law.mass_kg > 0.0 && !is_unknown(Part::kMass, 0)) add("m", d.law.mass_kg, "kg");
+  for (std::size_t i = 0; i < d.law.terms.size(); ++i) {
+    const law::Regressor& c = d.law.terms[i].column;
+    const law::TermText& text = law::text_of(c.kind);
+    if (!is_unknown(Part::kA, i)) add(fmt::format("a{}", i + 1), c.a, text.unit_a);
+    if (!is_unknown(Part::kB, i)) add(fmt::format("b{}", i + 1), c.b, text.unit_b);
+  }
+  return given.empty() ? "" : "Given: " + joined(given) + ".";
+}
+
+/// What the law leaves of the record that it was found from.
+std::string left_text(const law::Document& d) {
+  std::string out;
+  const auto add = [&](double value, const char* unit, const std::string& of) {
+    const ReadUnit read = read_unit(unit, value);
+    if (value > 0.0)
+      out += fmt::format("{}{:.3g} {} rms of {}", out.empty() ? "It leaves " : ", ",
+                         read.factor * value, read.name, of);
+  };
+  add(d.residual_n, "N",
+      d.filter_hz > 0.0 ? fmt::format("the force behind a low pass of {:.3g} Hz", d.filter_hz)
+                        : std::string{"the force"});
+  add(d.residual_m, "m", "the motion when the force alone moves the mass");
+  if (d.free_run) add(d.free_run->residual_m, "m", "that motion by the figures for a free run");
+  add(d.residual_mps2, "m/s^2", "the frame's acceleration");
+  return out.empty() ? "" : out + ".";
+}
+
+}  // namespace
+
+std::string law_section(const RunResult& result) {
+  if (result.law.empty()) return "";
+  const law::Document d = law::read_document(result.law, "law.json");
+  const law::Document moves = d.for_free_run();
+  std::vector<std::string> header{"unknown", "value ± standard deviation"};
+  if (d.free_run) header.emplace_back("for a free run");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < d.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    rows.push_back(
+        {names_of(d.unknowns[i]), quantity_text(d.values()[at], d.std_of(at), d.unit_of(i))});
+    if (d.free_run)
+      rows.back().push_back(quantity_text(moves.values()[at], moves.std_of(at), d.unit_of(i)));
+  }
+  std::string out = fmt::format("<p><code>{}</code></p>\n", escape_html(d.equation()));
+  out += html_table(header, rows, header.size() - 1);
+  out += paragraph(given_text(d));
+  out += paragraph(left_text(d));
+  if (!d.not_in_it.empty()) out += paragraph("Not in it: " + joined(d.not_in_it) + ".");
+  const bool remembers = !law::memories_of(d.law).empty();
+  return out +
+         paragraph(fmt::format(
+             "v = x'{}. law.json holds it with its covariance; dampline predict gives what it "
+             "does under another input.",
+             remembers ? ", u = z / a, and z follows x within -a and a" : ""));
 }
 
 std::string quality_section(const RunResult& result) {

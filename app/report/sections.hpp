@@ -13,6 +13,9 @@ namespace dampline::app {
 [[nodiscard]] std::string parameter_section(const RunResult& result);
 /// The law that identify states, where an explanation added to it; else empty.
 [[nodiscard]] std::string base_section(const RunResult& result);
+/// The law of an explanation as an equation with its numbers; else empty. Throws RunError where
+/// law.json is none.
+[[nodiscard]] std::string law_section(const RunResult& result);
 [[nodiscard]] std::string quality_section(const RunResult& result);
 [[nodiscard]] std::string excluded_section(const RunResult& result);
 /// The methods beside the wavelet windows; those that the record contradicts are grey, with the

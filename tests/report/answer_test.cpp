@@ -7,7 +7,10 @@
 
 #include <string>
 
+#include "app/error.hpp"
+#include "app/law/document.hpp"
 #include "app/report/page.hpp"
+#include "app/report/sections.hpp"
 #include "tests/app/fake_result.hpp"
 
 namespace dampline::app {
@@ -89,6 +92,55 @@ TEST(Answer, StandsAboveCurveAndAdviceOnEveryPage) {
   EXPECT_THAT(make_page(live, {}, kRun),
               AllOf(HasSubstr("identified live"), HasSubstr("The model is complete"),
                     Not(HasSubstr("Verdict:"))));
+}
+
+/// A mass that is given, a stop on both sides at one gap, and Dahl's element.
+law::Document example_law() {
+  using law::Kind;
+  using Part = law::Unknown::Part;
+  law::Document out;
+  out.subject = law::Subject::kDrivenMass;
+  out.law = {2.0,
+             {{{Kind::kDeflection}, 5.26e6},
+              {{Kind::kBumpUp, 0.0014}, 9e6},
+              {{Kind::kBumpDown, 0.0014}, 9e6},
+              {{Kind::kStop, 1e-4}, 812.0}}};
+  out.unknowns = {{"c1", Part::kCoefficient, {0}},
+                  {"c2", Part::kCoefficient, {1, 2}},
+                  {"a2", Part::kA, {1, 2}},
+                  {"c4", Part::kCoefficient, {3}}};
+  out.covariance = Eigen::MatrixXd::Zero(4, 4);
+  out.covariance.diagonal() << 1e8, 1e10, 1e-10, 4.0;
+  out.residual_n = 1.25;
+  out.residual_m = 3.0e-3;
+  out.filter_hz = 20.0;
+  out.not_in_it = {"time_skew: the force was late by <2> ms"};
+  return out;
+}
+
+TEST(LawAsAnEquation, HasItsUnknownsWhatIsGivenAndWhatItLeaves) {
+  RunResult result = fake_result();
+  EXPECT_EQ(law_section(result), "");
+  law::Document law = example_law();
+  result.law = law::to_json(law);
+  const std::string html = law_section(result);
+  EXPECT_THAT(html, HasSubstr("<code>m x'' + c1 x + c2 max(x - a2, 0)"));
+  EXPECT_THAT(html, AllOf(HasSubstr("5.260 ± 0.010 MN/m"), HasSubstr("c2 = c3"),
+                          HasSubstr("a2 = a3"), HasSubstr("1.400 ± 0.010 mm")));
+  EXPECT_THAT(html, HasSubstr("Given: m = 2 kg, a4 = 0.1 mm."));
+  EXPECT_THAT(html, AllOf(HasSubstr("1.25 N rms of the force behind a low pass of 20 Hz"),
+                          HasSubstr("3 mm rms of the motion"), HasSubstr("late by &lt;2&gt; ms"),
+                          HasSubstr("z follows x"), Not(HasSubstr("for a free run"))));
+  Eigen::VectorXd values = law.values();
+  values[3] = 790.0;
+  law.free_run = {values, 4.0 * law.covariance, {}, "", 1.5e-3};
+  result.law = law::to_json(law);
+  EXPECT_THAT(law_section(result),
+              AllOf(HasSubstr("for a free run"), HasSubstr("790.0 ± 4.0 N"),
+                    HasSubstr("1.5 mm rms of that motion by the figures for a free run")));
+  EXPECT_THAT(make_page(result, {}, kRun), HasSubstr(">The law as an equation<"));
+  result.law = "{}";
+  EXPECT_THROW((void)law_section(result), RunError);
 }
 
 TEST(Counters, ThatAreZeroAreFolded) {
