@@ -23,7 +23,7 @@ Sample sample_at(std::int64_t tick, double value) {
   Sample out;
   out.tick = tick;
   out.accel_mps2 = {value, 2.0 * value, -value};
-  out.extra_mps2 = {static_cast<float>(3.0 * value), 0.0F};
+  out.extra_mps2 = {static_cast<float>(3.0 * value), static_cast<float>(-5.0 * value)};
   return out;
 }
 
@@ -38,6 +38,7 @@ std::complex<double> response(double corner_hz, double rate_hz, double tone_hz) 
     const Sample out = filter.update(sample_at(n, std::cos(phase)));
     EXPECT_NEAR(out.accel_mps2[1], 2.0 * out.accel_mps2[0], 1e-12);
     EXPECT_NEAR(out.extra_mps2[0], 3.0 * out.accel_mps2[0], 1e-5);
+    EXPECT_NEAR(out.extra_mps2[1], -5.0 * out.accel_mps2[0], 1e-5);
     if (n >= settled) sum += out.accel_mps2[0] * std::polar(2.0, -phase);
   }
   return sum / static_cast<double>(counted);
