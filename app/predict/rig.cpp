@@ -14,6 +14,7 @@
 #include "app/error.hpp"
 #include "app/law/start.hpp"
 #include "app/run/provenance.hpp"
+#include "app/text/format.hpp"
 #include "drivers/bytes/spool.hpp"
 #include "drivers/record/rows.hpp"
 
@@ -149,8 +150,9 @@ std::string own_figures_text(const law::Document& document) {
   std::string out = "By the law's figures for a free run:";
   for (std::size_t i = 0; i < document.unknowns.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    out += fmt::format("{} {} {:.4g} ± {:.2g}", i == 0 ? "" : ",", document.unknowns[i].name,
-                       document.values()[at], document.std_of(at));
+    out +=
+        fmt::format("{} {} {}", i == 0 ? "" : ",", document.unknowns[i].name,
+                    quantity_text(document.values()[at], document.std_of(at), document.unit_of(i)));
   }
   return out + ".";
 }

@@ -117,6 +117,10 @@ TEST(MeasuredEmps, MovesByFiguresOfItsOwn) {
   // Output error with its own stick and slip, the same structure and a free start: 1.52 mm.
   EXPECT_NEAR(law.free_run->residual_m, 1.52e-3, 0.02e-3);
   EXPECT_NEAR(free_run_error_m(law, file.string()), law.free_run->residual_m, 1e-6);
+  const Prediction moved =
+      predict_motion(law, example("emps_explain.toml"), {file.string(), false});
+  ASSERT_FALSE(moved.notes.empty());
+  EXPECT_NE(moved.notes.back().find(" kg, "), std::string::npos) << moved.notes.back();
   const double published_kg = 95.1;
   EXPECT_NEAR(law.law.mass_kg, published_kg, 0.5);
   law::Document moves = law.for_free_run();
