@@ -13,6 +13,7 @@
 #include "app/error.hpp"
 #include "app/run/json.hpp"
 #include "app/run/provenance.hpp"
+#include "app/text/format.hpp"
 
 namespace dampline::app::law {
 namespace {
@@ -96,6 +97,12 @@ double part_of(const Law& law, const Unknown& u) {
                                       : t.column.b;
 }
 
+const char* unit_of(const Law& law, const Unknown& u) {
+  if (u.part == Part::kMass) return "kg";
+  const TermText& text = text_of(law.terms[u.terms.front()].column.kind);
+  return u.part == Part::kCoefficient ? text.unit : u.part == Part::kA ? text.unit_a : text.unit_b;
+}
+
 /// A function with its places named: of term 3 "tanh(v / a3)"; a sharp one "sign(v)".
 std::string function_of(const Term& term, std::size_t number) {
   std::string text = text_of(term.column.kind).function;
@@ -140,7 +147,7 @@ Json term_json(const Document& d, std::size_t i) {
 Json unknown_json(const Document& d, std::size_t i) {
   const Unknown& u = d.unknowns[i];
   Json out = parameter_json(u.name, {part_of(d.law, u), d.std_of(static_cast<Eigen::Index>(i))},
-                            d.unit_of(i));
+                            unit_of(d.law, u));
   out["part"] = name_in(kParts, u.part);
   out["terms"] = u.terms;
   return out;
@@ -350,11 +357,9 @@ Document Document::for_free_run() const {
   return out;
 }
 
-const char* Document::unit_of(std::size_t i) const {
-  const Unknown& u = unknowns[i];
-  if (u.part == Part::kMass) return "kg";
-  const TermText& text = text_of(law.terms[u.terms.front()].column.kind);
-  return u.part == Part::kCoefficient ? text.unit : u.part == Part::kA ? text.unit_a : text.unit_b;
+std::string Document::text_of(std::size_t i) const {
+  return quantity_text(part_of(law, unknowns[i]), std_of(static_cast<Eigen::Index>(i)),
+                       unit_of(law, unknowns[i]));
 }
 
 double Document::std_of(Eigen::Index i) const { return std::sqrt(std::max(covariance(i, i), 0.0)); }

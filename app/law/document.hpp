@@ -67,7 +67,8 @@ struct Document {
   [[nodiscard]] Document for_free_run() const;
   /// The equation of motion with the unknowns' names: "m x'' + c1 x + c2 sign(v) = f".
   [[nodiscard]] std::string equation() const;
-  [[nodiscard]] const char* unit_of(std::size_t i) const;
+  /// Unknown i with its deviation and unit: "93.0 ± 2.9 kg".
+  [[nodiscard]] std::string text_of(std::size_t i) const;
   /// Deviation of unknown i.
   [[nodiscard]] double std_of(Eigen::Index i) const;
 };

@@ -14,7 +14,6 @@
 #include "app/error.hpp"
 #include "app/law/start.hpp"
 #include "app/run/provenance.hpp"
-#include "app/text/format.hpp"
 #include "drivers/bytes/spool.hpp"
 #include "drivers/record/rows.hpp"
 
@@ -148,12 +147,9 @@ void check_movable(const law::Document& document) {
 
 std::string own_figures_text(const law::Document& document) {
   std::string out = "By the law's figures for a free run:";
-  for (std::size_t i = 0; i < document.unknowns.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
+  for (std::size_t i = 0; i < document.unknowns.size(); ++i)
     out +=
-        fmt::format("{} {} {}", i == 0 ? "" : ",", document.unknowns[i].name,
-                    quantity_text(document.values()[at], document.std_of(at), document.unit_of(i)));
-  }
+        fmt::format("{} {} {}", i == 0 ? "" : ",", document.unknowns[i].name, document.text_of(i));
   return out + ".";
 }
 

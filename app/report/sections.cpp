@@ -126,6 +126,7 @@ bool is_in(const std::string& equation, const std::string& name) {
 /// What the equation names, a in its u too, and nobody identified.
 std::string given_text(const law::Document& d) {
   using Part = law::Unknown::Part;
+  const std::string equation = d.equation();
   std::vector<std::string> given;
   const auto is_unknown = [&](Part part, std::size_t term) {
     return std::any_of(d.unknowns.begin(), d.unknowns.end(), [&](const law::Unknown& u) {
@@ -134,7 +135,6 @@ std::string given_text(const law::Document& d) {
     });
   };
   const auto add = [&](const std::string& name, double value, const char* unit) {
-    const std::string equation = d.equation();
     if (is_in(equation, name) || (name[0] == 'a' && is_in(equation, "u" + name.substr(1))))
       given.push_back(fmt::format("{} = {}", name, quantity_text(value, 0.0, unit)));
   };
@@ -176,11 +176,8 @@ std::string law_section(const RunResult& result) {
   if (d.free_run) header.emplace_back("for a free run");
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < d.unknowns.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    rows.push_back(
-        {names_of(d.unknowns[i]), quantity_text(d.values()[at], d.std_of(at), d.unit_of(i))});
-    if (d.free_run)
-      rows.back().push_back(quantity_text(moves.values()[at], moves.std_of(at), d.unit_of(i)));
+    rows.push_back({names_of(d.unknowns[i]), d.text_of(i)});
+    if (d.free_run) rows.back().push_back(moves.text_of(i));
   }
   std::string out = fmt::format("<p><code>{}</code></p>\n", escape_html(d.equation()));
   out += html_table(header, rows, header.size() - 1);

@@ -12,16 +12,21 @@
 namespace dampline {
 namespace {
 
+/// What saw so many seconds of a laden car.
+std::unique_ptr<Estimator> after_ride(int seconds, std::uint64_t seed) {
+  auto out = std::make_unique<Estimator>(EstimatorConfig{});
+  sim::Simulation simulation{sim::reference_run(sim::Load::kLaden, 80.0, seed)};
+  for (int i = 0; i < seconds * sim::kSampleRateHz; ++i)
+    out->update(sim::to_sample(simulation.next()));
+  out->finish();
+  return out;
+}
+
 /// Of two minutes of a laden car, made once.
 const Statistics& of_a_ride() {
   static const std::unique_ptr<Statistics> kOwner = [] {
-    const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
-    sim::Simulation simulation{sim::reference_run(sim::Load::kLaden, 80.0, 5)};
-    for (int i = 0; i < 120 * sim::kSampleRateHz; ++i)
-      estimator->update(sim::to_sample(simulation.next()));
-    estimator->finish();
     auto out = std::make_unique<Statistics>();
-    estimator->export_statistics(*out);
+    after_ride(120, 5)->export_statistics(*out);
     return out;
   }();
   return *kOwner;
@@ -59,7 +64,7 @@ TEST(SummaryRules, NothingIsValidWithoutLongWindows) {
   auto only_short = std::make_unique<Statistics>(of_a_ride());
   for (std::size_t s = 0; s + 1 < kScales; ++s) {
     EXPECT_TRUE(summarise(*without_scale(s), {.moving_mass_kg = 1000.0}).valid) << s;
-    for (ScaleFactors* f : {&only_short->total}) f->factor[s].clear();
+    only_short->total.factor[s].clear();
   }
   const Snapshot none = summarise(*only_short, {.moving_mass_kg = 1000.0});
   EXPECT_FALSE(none.valid);
@@ -71,13 +76,8 @@ TEST(SummaryRules, TheWidthsDeviationIsThatOfItsScatter) {
   double sum = 0.0, squares = 0.0, stated = 0.0;
   constexpr int kRides = 8;
   for (int ride = 0; ride < kRides; ++ride) {
-    const auto estimator = std::make_unique<Estimator>(EstimatorConfig{});
-    sim::Simulation simulation{
-        sim::reference_run(sim::Load::kLaden, 80.0, 100 + static_cast<std::uint64_t>(ride))};
-    for (int i = 0; i < 60 * sim::kSampleRateHz; ++i)
-      estimator->update(sim::to_sample(simulation.next()));
-    estimator->finish();
-    const Estimate width = estimator->snapshot().law_width_mps;
+    const Estimate width =
+        after_ride(60, 100 + static_cast<std::uint64_t>(ride))->snapshot().law_width_mps;
     sum += width.value;
     squares += width.value * width.value;
     stated += width.std / kRides;
