@@ -38,13 +38,13 @@ Parsed parse(const std::string& line) {
 
 // can-utils writes `_9` to `_F` behind eight bytes where a frame's length code was larger.
 TEST(CandumpLine, ReadsOverALengthCodeBehindEightBytes) {
-  const Parsed line = parse("(1.5) can0 0D0#A8FF00000000FF01_9");
+  const Parsed line = parse("(1.500000) can0 0D0#A8FF00000000FF01_9");
   ASSERT_EQ(line.expected, "");
   EXPECT_EQ(line.frame.length, 8);
   EXPECT_EQ(line.frame.data[7], 0x01);
-  EXPECT_NE(parse("(1.5) can0 0D0#A8FF00000000FF_9").expected, "") << "behind seven";
-  EXPECT_NE(parse("(1.5) can0 0D0#A8FF00000000FF01_").expected, "");
-  EXPECT_NE(parse("(1.5) can0 0D0#A8FF00000000FF01_X").expected, "");
+  EXPECT_NE(parse("(1.500000) can0 0D0#A8FF00000000FF_9").expected, "") << "behind seven";
+  EXPECT_NE(parse("(1.500000) can0 0D0#A8FF00000000FF01_").expected, "");
+  EXPECT_NE(parse("(1.500000) can0 0D0#A8FF00000000FF01_X").expected, "");
 }
 
 TEST(CandumpLine, ReadsAStandardFrame) {
