@@ -177,22 +177,33 @@ FreeRun::FreeRun(const Law& law, const Input& input, int refinement)
       steps_{refinement * steps_for(law, input.interval_s())} {
   for (std::size_t i = 0; i < law.terms.size(); ++i) {
     const Term& t = law.terms[i];
-    (t.sharp ? sharp_ : smooth_).push_back(i);
     memory_of_.push_back(place_of(memories_, t.column));
+    if (t.sharp && t.column.kind == Kind::kSign)
+      held_n_ += t.coefficient;
+    else if (t.sharp)
+      sharp_.push_back(i);
+    else if (t.column.kind == Kind::kOne)
+      constant_n_ += t.coefficient;
+    else if (t.column.kind == Kind::kDeflection)
+      spring_npm_ += t.coefficient;
+    else if (t.column.kind == Kind::kVelocity)
+      damper_nspm_ += t.coefficient;
+    else
+      smooth_.push_back(i);
     turns_ = turns_ || t.sharp || t.column.kind == Kind::kBoucWen || has_stop(t.column.kind) ||
              t.column.kind == Kind::kSpeed || t.column.kind == Kind::kSpeedSquared;
   }
 }
 
 double FreeRun::level(double x, double v) const noexcept {
-  double out = 0.0;
+  double out = held_n_;
   for (const std::size_t i : sharp_)
     out += law_.terms[i].coefficient * level_of(law_.terms[i].column, x, v);
   return out;
 }
 
 double FreeRun::smooth_force(double x, double v, const State& state) const noexcept {
-  double out = 0.0;
+  double out = constant_n_ + spring_npm_ * x + damper_nspm_ * v;
   for (const std::size_t i : smooth_) {
     const Term& t = law_.terms[i];
     const std::size_t m = memory_of_[i];
@@ -208,8 +219,7 @@ double FreeRun::smooth_force(double x, double v, const State& state) const noexc
 }
 
 double FreeRun::accel(const State& s, double force_n, Mode mode) const noexcept {
-  const double friction =
-      sharp_.empty() ? 0.0 : static_cast<double>(mode) * level(s.deflection_m, s.velocity_mps);
+  const double friction = static_cast<double>(mode) * level(s.deflection_m, s.velocity_mps);
   return (force_n - smooth_force(s.deflection_m, s.velocity_mps, s) - friction) / law_.mass_kg;
 }
 
@@ -243,13 +253,13 @@ void FreeRun::place(const State& from, double dt_s, const Rate& r, State& out) c
   }
 }
 
-/// `share` and `length` in samples.
-State FreeRun::step(const State& from, Eigen::Index i, double share, double length,
+/// `share` and `length` in samples; `force_n`: at `share`.
+State FreeRun::step(const State& from, double force_n, Eigen::Index i, double share, double length,
                     Mode mode) const noexcept {
   const double dt_s = length * input_.interval_s();
   const double middle_n = input_.at(i, share + 0.5 * length);
   State there = from;
-  const Rate a = rate(from, input_.at(i, share), mode);
+  const Rate a = rate(from, force_n, mode);
   place(from, 0.5 * dt_s, a, there);
   const Rate b = rate(there, middle_n, mode);
   place(from, 0.5 * dt_s, b, there);
@@ -273,8 +283,8 @@ FreeRun::Mode FreeRun::mode_of(const State& s, double force_n) const noexcept {
 }
 
 /// The length after which the velocity is 0; `at`: the state there, at exactly 0.
-double FreeRun::until_turned(const State& from, Eigen::Index i, double share, double length,
-                             Mode mode, State& at) const noexcept {
+double FreeRun::until_turned(const State& from, double force_n, Eigen::Index i, double share,
+                             double length, Mode mode, State& at) const noexcept {
   double low = 0.0;
   double high = length;
   double v_low = from.velocity_mps;
@@ -284,7 +294,7 @@ double FreeRun::until_turned(const State& from, Eigen::Index i, double share, do
   int kept = 0;  // the Illinois rule: an end that stays counts half
   for (int k = 0; k < kSecants; ++k) {
     out = v_low == v_high ? high : (low * v_high - high * v_low) / (v_high - v_low);
-    at = step(from, i, share, out, mode);
+    at = step(from, force_n, i, share, out, mode);
     if (std::abs(at.velocity_mps) <= enough || high - low < 1e-14) break;
     const bool above = (at.velocity_mps > 0.0) == (v_high > 0.0);
     (above ? high : low) = out;
@@ -330,7 +340,8 @@ void FreeRun::advance(Eigen::Index i, State& state) const noexcept {
     double share = n * whole;
     double left = whole;
     for (int events = 0; left > 1e-12 && events < kMostEvents; ++events) {
-      const Mode mode = mode_of(state, input_.at(i, share));
+      const double force_n = input_.at(i, share);
+      const Mode mode = mode_of(state, force_n);
       double length = left;
       if (mode == Mode::kStuck) {
         length = until_free(state, i, share, left);
@@ -339,10 +350,10 @@ void FreeRun::advance(Eigen::Index i, State& state) const noexcept {
         // Past the end of its hold by rounding: the next step must move.
         if (length < left) state.velocity_mps = std::copysign(1e-300, pull_n);
       } else {
-        State there = step(state, i, share, left, mode);
+        State there = step(state, force_n, i, share, left, mode);
         const bool turned = turns_ && there.velocity_mps * static_cast<double>(mode) < 0.0;
         if (turned && state.velocity_mps != 0.0 && std::abs(state.velocity_mps) > 1e-300)
-          length = until_turned(state, i, share, left, mode, there);
+          length = until_turned(state, force_n, i, share, left, mode, there);
         state = there;
       }
       share += length;
@@ -351,9 +362,9 @@ void FreeRun::advance(Eigen::Index i, State& state) const noexcept {
   }
 }
 
-Course move(const Law& law, const Input& input, State state) {
+Course move(const Law& law, const Input& input, State state, int refinement) {
   constexpr double kFarthestM = 1e6;
-  const FreeRun run{law, input};
+  const FreeRun run{law, input, refinement};
   const Eigen::Index count = input.size();
   Course out{false, Eigen::VectorXd{count}, Eigen::VectorXd{count}};
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -75,7 +75,7 @@ class FreeRun {
   struct Rate {
     double x{0.0};
     double v{0.0};
-    std::array<double, kMostMemories> z{};
+    std::array<double, kMostMemories> z;  ///< of the memories that there are
   };
   enum class Mode : std::int8_t { kBack = -1, kStuck = 0, kForth = 1 };
 
@@ -84,16 +84,21 @@ class FreeRun {
   [[nodiscard]] double accel(const State& state, double force_n, Mode mode) const noexcept;
   [[nodiscard]] Rate rate(const State& state, double force_n, Mode mode) const noexcept;
   void place(const State& from, double dt_s, const Rate& rate, State& out) const noexcept;
-  [[nodiscard]] State step(const State& from, Eigen::Index i, double share, double length,
-                           Mode mode) const noexcept;
+  [[nodiscard]] State step(const State& from, double force_n, Eigen::Index i, double share,
+                           double length, Mode mode) const noexcept;
   [[nodiscard]] Mode mode_of(const State& state, double force_n) const noexcept;
-  [[nodiscard]] double until_turned(const State& from, Eigen::Index i, double share, double length,
-                                    Mode mode, State& at) const noexcept;
+  [[nodiscard]] double until_turned(const State& from, double force_n, Eigen::Index i, double share,
+                                    double length, Mode mode, State& at) const noexcept;
   [[nodiscard]] double until_free(const State& stuck, Eigen::Index i, double share,
                                   double length) const noexcept;
 
   const Law& law_;
   const Input& input_;
+  // Terms that ask for no function are summed; the others by their places.
+  double held_n_{0.0};  ///< level of friction that depends on nothing
+  double constant_n_{0.0};
+  double spring_npm_{0.0};
+  double damper_nspm_{0.0};
   std::vector<std::size_t> sharp_;
   std::vector<std::size_t> smooth_;
   std::vector<Regressor> memories_;     ///< what the terms remember; like terms share one
@@ -110,6 +115,6 @@ struct Course {
 };
 
 /// From the first sample of the input to its last. Precondition: FreeRun::can(law).
-[[nodiscard]] Course move(const Law& law, const Input& input, State state);
+[[nodiscard]] Course move(const Law& law, const Input& input, State state, int refinement = 1);
 
 }  // namespace dampline::app::law

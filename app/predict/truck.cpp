@@ -19,6 +19,9 @@ namespace {
 
 constexpr double kSettleS = 5.0;     // after a start at rest, until the motion is the record's
 constexpr double kShortestS = 10.0;  // of a stretch that is moved
+// Rails move wheelsets far faster than a truck swings: it turns within a sample, and more than
+// once.
+constexpr int kRefinement = 4;
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 struct Samples {
@@ -99,7 +102,7 @@ Eigen::VectorXd moved(const law::Law& law, const Samples& samples,
     const Eigen::VectorXd wheels =
         Eigen::Map<const Eigen::VectorXd>(samples.wheelsets_mps2.data() + s.from, n);
     const Eigen::VectorXd push_n = -law.mass_kg * (wheels.array() - wheels.mean());
-    const law::Course course = law::move(law, law::Input{push_n, interval_s}, {});
+    const law::Course course = law::move(law, law::Input{push_n, interval_s}, {}, kRefinement);
     if (!course.whole) return {};
     out.segment(s.from, n) = course.deflection_m;
     const Eigen::VectorXd input = smoothed(wheels);

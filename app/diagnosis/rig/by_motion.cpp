@@ -148,7 +148,7 @@ struct Form {
 
 /// The model in other forms that the equations hardly tell apart where the motion is noisy:
 /// friction without a width of its own, the other ways in which friction falls with speed, a memory
-/// that yields smoothly.
+/// that yields smoothly. The plainer ones first.
 std::vector<Form> other_forms(const Model& model, const Scale& scale) {
   std::vector<Form> starts{{model}};
   for (std::size_t i = 0; i < model.columns.size(); ++i) {
@@ -157,6 +157,7 @@ std::vector<Form> other_forms(const Model& model, const Scale& scale) {
     starts.back().model.columns[i].a = scale.sign_mps;
   }
   std::vector<Form> out{starts.begin() + 1, starts.end()};
+  std::rotate(starts.begin(), starts.begin() + 1, starts.end());
   for (const Form& start : starts)
     for (std::size_t i = 0; i < model.columns.size(); ++i) {
       const Regressor& c = start.model.columns[i];
@@ -225,20 +226,24 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
   if (!first.shot.ok || first.shot.nmse < kExact) return first;
   std::vector<Moved> starts{first};
   Moved best = first;
-  const auto take = [&](Moved there, double enough) {
+  bool plainer = false;  // the best
+  const auto take = [&](Moved there, bool as_plainer) {
     if (!there.shot.ok) return;
+    const double enough = as_plainer ? kPlainer : kOtherForm;
     // What misses more than noise makes unlike blocks, which only held out say what is better.
     const bool noise = follows(there.shot, noise_m, kNearlyWhite);
     const double left = noise ? there.shot.nmse : there.shot.held_out_nmse;
     if (!(left < enough * (noise ? best.shot.nmse : best.shot.held_out_nmse))) return;
     best = std::move(there);
+    plainer = as_plainer;
   };
   for (const Form& form : forms) {
+    if (plainer && !form.plainer && follows(best.shot, noise_m, kNearlyWhite)) continue;
     Model there = form.model;
     const Joint by_rows = fit_jointly(there, records, first.model.ridge, scale);
     if (!by_rows.ok) continue;
     starts.push_back(move_quickly(there, by_rows, unknowns_of(there, by_rows), scale, part));
-    take(starts.back(), form.plainer ? kPlainer : kOtherForm);
+    take(starts.back(), form.plainer);
     if (best.shot.nmse < kExact) return best;
   }
   // Sticking makes many minima: from where the best form has come, and with other speeds.
@@ -249,7 +254,7 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
       if ((times != 1.0 && follows(best.shot, noise_m, kNearlyWhite)) ||
           form.joint.size() != from.joint.size() || same != (times != 1.0))
         continue;
-      take(move_quickly(form.model, form.joint, with_speeds(from, times), scale, part), kOtherForm);
+      take(move_quickly(form.model, form.joint, with_speeds(from, times), scale, part), false);
     }
   return best;
 }
