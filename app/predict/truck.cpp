@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
-#include "app/identify/truck_run.hpp"
+#include "app/identify/truck_samples.hpp"
 #include "app/record/columns.hpp"
 #include "app/record/rate.hpp"
 #include "app/record/source_kind.hpp"
@@ -17,40 +16,8 @@
 namespace dampline::app {
 namespace {
 
-constexpr double kSettleS = 5.0;     // after a start at rest, until the motion is the record's
-constexpr double kShortestS = 10.0;  // of a stretch that is moved
-// Rails move wheelsets far faster than a truck swings: it turns within a sample, and more than
-// once.
-constexpr int kRefinement = 4;
+constexpr double kSettleS = 5.0;  // after a start at rest, until the motion is the record's
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-
-struct Samples {
-  std::vector<std::int64_t> tick;
-  std::vector<double> frame_mps2;
-  std::vector<double> wheelsets_mps2;  ///< z_1'' + z_2''
-  double rate_hz{0.0};
-};
-
-Samples read_samples(const Config& config, const SourceOptions& source, SourceKind kind) {
-  static_cast<void>(estimator_config(config));
-  const auto feed = open_feed(config, source, kind);
-  TruckRun<kIdentifyParts> run{config, feed->signals()};
-  Samples out;
-  run.watch([&](const Sample& sample, const UpdateResult& /*unused*/) {
-    if (sample.spoilt) return;
-    out.tick.push_back(sample.tick);
-    out.frame_mps2.push_back(sample.accel_mps2[0]);
-    out.wheelsets_mps2.push_back(sample.accel_mps2[1] + sample.accel_mps2[2]);
-  });
-  pump(*feed, source, false, run);
-  run.close();
-  if (out.tick.size() < 2)
-    throw RunError{
-        fmt::format("{}: found {} samples, expected some seconds", source.path, out.tick.size())};
-  const double nominal_hz = truck_rate_hz(config.input);
-  out.rate_hz = nominal_hz * make_correction(rate_of(*feed, run), nominal_hz, source.path).ratio;
-  return out;
-}
 
 /// Mean over an interval on either side of each sample, as a difference of a velocity gives it, of
 /// what is band-limited between samples. The ends as they are.
@@ -70,39 +37,20 @@ Eigen::VectorXd smoothed(const Eigen::VectorXd& values) {
   return out;
 }
 
-/// Where no gap is: from, and one past the last.
-struct Stretch {
-  Eigen::Index from;
-  Eigen::Index to;
-};
-
-std::vector<Stretch> stretches_of(const Samples& samples) {
-  std::vector<Stretch> out;
-  const auto shortest = static_cast<Eigen::Index>(kShortestS * samples.rate_hz);
-  Eigen::Index from = 0;
-  const auto count = static_cast<Eigen::Index>(samples.tick.size());
-  for (Eigen::Index i = 1; i <= count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (i < count && samples.tick[at] == samples.tick[at - 1] + 1) continue;
-    if (i - from >= shortest) out.push_back({from, i});
-    from = i;
-  }
-  return out;
-}
-
 /// Deflection and frame acceleration of all samples one behind the other, NaN between stretches;
 /// empty where the law runs away.
-Eigen::VectorXd moved(const law::Law& law, const Samples& samples,
-                      const std::vector<Stretch>& stretches) {
+Eigen::VectorXd moved(const law::Law& law, const TruckSamples& samples,
+                      const std::vector<TruckSamples::Stretch>& stretches) {
   const auto count = static_cast<Eigen::Index>(samples.tick.size());
   Eigen::VectorXd out = Eigen::VectorXd::Constant(2 * count, kNowhere);
   const double interval_s = 1.0 / samples.rate_hz;
-  for (const Stretch& s : stretches) {
+  for (const TruckSamples::Stretch& s : stretches) {
     const Eigen::Index n = s.to - s.from;
     const Eigen::VectorXd wheels =
         Eigen::Map<const Eigen::VectorXd>(samples.wheelsets_mps2.data() + s.from, n);
     const Eigen::VectorXd push_n = -law.mass_kg * (wheels.array() - wheels.mean());
-    const law::Course course = law::move(law, law::Input{push_n, interval_s}, {}, kRefinement);
+    const law::Course course =
+        law::move(law, law::Input{push_n, interval_s}, {}, TruckSamples::kRefinement);
     if (!course.whole) return {};
     out.segment(s.from, n) = course.deflection_m;
     const Eigen::VectorXd input = smoothed(wheels);
@@ -116,13 +64,14 @@ Eigen::VectorXd moved(const law::Law& law, const Samples& samples,
 
 /// The measured frame acceleration where a prediction is to be judged; NaN elsewhere. The mean is
 /// the sensor's offset.
-Eigen::VectorXd judged(const Samples& samples, const std::vector<Stretch>& stretches,
+Eigen::VectorXd judged(const TruckSamples& samples,
+                       const std::vector<TruckSamples::Stretch>& stretches,
                        const Eigen::VectorXd& predicted) {
   const auto count = static_cast<Eigen::Index>(samples.tick.size());
   const Eigen::VectorXd frame = Eigen::Map<const Eigen::VectorXd>(samples.frame_mps2.data(), count);
   Eigen::VectorXd out = Eigen::VectorXd::Constant(count, kNowhere);
   const auto settle = static_cast<Eigen::Index>(kSettleS * samples.rate_hz);
-  for (const Stretch& s : stretches) {
+  for (const TruckSamples::Stretch& s : stretches) {
     const Eigen::Index from = s.from + settle;
     const Eigen::Index n = s.to - 1 - from;
     const Eigen::VectorXd seen = smoothed(frame.segment(s.from, s.to - s.from)).segment(settle, n);
@@ -141,10 +90,12 @@ Prediction predict_frame(const law::Document& document, const Config& given,
   if (kind == SourceKind::kInterface || kind == SourceKind::kRigRows)
     throw UsageError{
         fmt::format("{}: is no truck's record, and the law is a truck's", source.path)};
-  const Samples samples = read_samples(with_record_rate(seen.config, source, kind), source, kind);
-  const std::vector<Stretch> stretches = stretches_of(samples);
+  const TruckSamples samples =
+      read_truck_samples(with_record_rate(seen.config, source, kind), source, kind);
+  const std::vector<TruckSamples::Stretch> stretches = samples.stretches();
   if (stretches.empty())
-    throw RunError{fmt::format("{}: holds no {:.0f} s without a gap", source.path, kShortestS)};
+    throw RunError{
+        fmt::format("{}: holds no {:.0f} s without a gap", source.path, TruckSamples::kShortestS)};
   const auto count = static_cast<Eigen::Index>(samples.tick.size());
   const auto outcome = [&](const law::Law& law) { return moved(law, samples, stretches); };
   const Eigen::VectorXd values = outcome(document.law);

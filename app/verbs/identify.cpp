@@ -64,7 +64,8 @@ Findings explain_truck_record(const Config& config, const ExplainFlags& options)
                     options.records.size())};
   Explained found = explain_truck(config, {{options.records.front(), options.skip_bad_lines},
                                            options.validation,
-                                           options.show_progress()});
+                                           options.show_progress(),
+                                           !options.no_refine});
   RunResult result = found.identified;
   const Explanation explanation = conclude(found, result);
   law::Document law =
@@ -142,7 +143,8 @@ void add_explain_verb(CLI::App& program, std::function<int()>& action) {
   verb->add_flag("--skip-bad-lines", options->skip_bad_lines,
                  "count malformed lines instead of stopping at the first");
   verb->add_flag("--no-refine", options->no_refine,
-                 "a driven mass: leave the law as the equations have it, without its own motion");
+                 "leave the law of a driven mass, or a truck's spring, as the equations have it, "
+                 "without its own motion");
   options->add_strict(*verb);
   verb->callback([options, &action] { action = [options] { return explain(*options); }; });
 }

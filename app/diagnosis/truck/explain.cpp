@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/diagnosis/truck/by_motion.hpp"
 #include "app/diagnosis/truck/looks.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
@@ -143,6 +144,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   look_for_other(reading, pass, out);
   look_for_low_pass(reading, out);
   effect::name_nothing_impossible(out.explanation);
+  if (options.refine) refine_by_motion(config, options.source, out);
   excuse_rate(config, out);
   take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;

@@ -34,8 +34,9 @@ struct Explained : effect::Judgement {
   Needless needless;
   std::vector<Validated> validation;
   Signature signature;  ///< of what the final model leaves; rms 0: the record was read only once
-  Convergence convergence;  ///< of the final model; where the record was read again
-  RunResult identified;     ///< what identify says of the same record
+  Convergence convergence;         ///< of the final model; where the record was read again
+  RunResult identified;            ///< what identify says of the same record
+  std::vector<std::string> notes;  ///< of what was found, a sentence each
   std::shared_ptr<const Statistics> sums;
   std::vector<InputFile> inputs;
 };
@@ -56,6 +57,7 @@ struct ExplainOptions {
   SourceOptions source;
   std::vector<std::string> validation;  ///< records that are never fitted
   bool show_progress{false};
+  bool refine{true};  ///< a spring that is not straight by the frame's own motion
 };
 
 /// Explains a truck's record. Throws RunError or UsageError; there is no partial result.

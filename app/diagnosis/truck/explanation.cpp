@@ -183,8 +183,9 @@ Explanation found_in(const Explained& explained) {
   out.force = "moving mass times the frame's deceleration, over 1 Hz";
   out.validation = explained.validation;
   out.faults = explained.identified.faults.list;
+  out.notes = explained.notes;
   if (const auto drift = drift_of(explained); drift && !explained.drifts)
-    out.notes = {drift_text(*drift)};
+    out.notes.push_back(drift_text(*drift));
   out.alike = alike_of(explained);
   out.signature = explained.signature;
   out.channels = {"frame", "wheelset1", "wheelset2"};
@@ -202,6 +203,7 @@ Explanation conclude(const Explained& explained, RunResult& result) {
                   [](const std::string& note) { return note.starts_with("A viscous part"); });
     if (!explained.convergence.rows.empty()) result.convergence = explained.convergence;
   }
+  result.notes.insert(result.notes.end(), explained.notes.begin(), explained.notes.end());
   result.faults.drift = drift_of(explained);
   out.known.unsteady = result.faults.drift && !explained.drifts &&
                        result.faults.drift->parameter != DriftFinding::kNotTold;

@@ -151,6 +151,10 @@ class DriftFreeIntegral {
     baseline_.reset();
   }
 
+  /// Of its baseline: the odd number of samples nearest to 0.17 s.
+  [[nodiscard]] static int decimation(double sample_rate_hz) noexcept {
+    return 2 * static_cast<int>(0.085 * sample_rate_hz) + 1;
+  }
   [[nodiscard]] int delay() const noexcept { return ShortIntegral::kDelay + baseline_.delay(); }
   /// Samples before the first one that has an integral.
   [[nodiscard]] int first() const noexcept {
@@ -159,11 +163,6 @@ class DriftFreeIntegral {
 
  private:
   static constexpr double kRebaseAt = 64.0;  // far above any motion, far below loss of digits
-
-  /// The odd number of samples nearest to 0.17 s.
-  static int decimation(double sample_rate_hz) noexcept {
-    return 2 * static_cast<int>(0.085 * sample_rate_hz) + 1;
-  }
 
   std::int64_t count_{0};
   ShortIntegral short_;

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "app/diagnosis/truck/by_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "app/beside.hpp"
+#include "app/diagnosis/truck/document.hpp"
+#include "app/diagnosis/truck/explanation.hpp"
+#include "app/identify/identify_source.hpp"
+#include "app/identify/truck_samples.hpp"
+#include "app/law/block_fit.hpp"
+#include "dampline/motion/drift_free_integral.hpp"
+
+namespace dampline::app {
+namespace {
+
+using effect::Effect;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using law::Kind;
+using Part = law::Unknown::Part;
+
+constexpr double kDriftHz = 0.05;        // slower accelerations are the sensors'
+constexpr double kSettleS = 5.0;         // at either end of a stretch
+constexpr double kLongestRideS = 600.0;  // of a record
+constexpr double kBlockS = 5.0;
+constexpr double kDifference = 1e-3;  // of an unknown, for its slope
+constexpr int kMotionRounds = 15;
+constexpr int kTries = 8;
+constexpr double kLittle = 1e-5;      // of the squares: a step that gains no more is the last
+constexpr double kOtherLevel = 0.05;  // between both levels of friction: the law is another one
+constexpr double kGain = 0.004;       // the core's integral is an integrator within this
+constexpr double kOffsetShare = 0.1;  // of the friction: first steps of the constant force
+
+bool is_elastic(Effect e) {
+  return e == Effect::kBumpStop || e == Effect::kCubicStiffness ||
+         e == Effect::kQuadraticStiffness || e == Effect::kAsymmetricStiffness;
+}
+
+/// The law of what was explained, with a constant force more, which shifts the rest position where
+/// friction differs up and down; the two sides of a stop have one stiffness.
+law::Document law_to_move(const Config& config, const Explained& explained) {
+  law::Document out = document_of(explained, told(explained).final.parameters,
+                                  estimator_config(config).moving_mass_kg);
+  const auto of = [&](Kind kind) {
+    return std::find_if(out.unknowns.begin(), out.unknowns.end(), [&](const law::Unknown& u) {
+      return u.part == Part::kCoefficient && out.law.terms[u.terms.front()].column.kind == kind;
+    });
+  };
+  const auto up = of(Kind::kBumpUp);
+  const auto down = of(Kind::kBumpDown);
+  if (up != out.unknowns.end() && down != out.unknowns.end()) {
+    up->terms.push_back(down->terms.front());
+    out.unknowns.erase(down);
+  }
+  out.unknowns.push_back({"c0", Part::kCoefficient, {out.law.terms.size()}});
+  out.law.terms.push_back({{Kind::kOne}, 0.0, false});
+  return out;
+}
+
+/// Less what is slower than `corner_hz`, to the first order, forth and back.
+void take_slow(double corner_hz, double rate_hz, VectorXd& values) {
+  const double share = 2.0 * std::numbers::pi * corner_hz / rate_hz;
+  for (int way = 0; way < 2; ++way) {
+    double slow = 0.0;
+    for (Index i = 0; i < values.size(); ++i) {
+      slow += share * (values[i] - slow);
+      values[i] -= slow;
+    }
+    values.reverseInPlace();
+  }
+}
+
+/// What a filter of the core makes of a signal, at its own time; 0 where it makes nothing.
+template <class Filter>
+VectorXd passed(Filter filter, const VectorXd& values) {
+  VectorXd out = VectorXd::Zero(values.size());
+  double value = 0.0;
+  for (Index i = 0; i < values.size(); ++i)
+    if (filter.update(values[i], value)) out[i - filter.delay()] = value;
+  return out;
+}
+
+/// A stretch of the record: what moves the law, and the velocity that it is to have.
+struct Ride {
+  law::Input push;
+  VectorXd velocity_mps;  ///< without what is slower than about 1 Hz
+};
+
+std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
+  std::vector<Ride> out;
+  double left_s = kLongestRideS;
+  const auto most = [&] { return static_cast<Index>(left_s * samples.rate_hz); };
+  for (const TruckSamples::Stretch& s : samples.stretches()) {
+    const Index n = std::min(s.to - s.from, most());
+    if (static_cast<double>(n) < 4.0 * kSettleS * samples.rate_hz) continue;
+    const auto at = [&](const std::vector<double>& v) -> VectorXd {
+      return Eigen::Map<const VectorXd>(v.data() + s.from, n);
+    };
+    const VectorXd wheels = at(samples.wheelsets_mps2);
+    VectorXd push_n = -law_mass_kg * (wheels.array() - wheels.mean());
+    take_slow(kDriftHz, samples.rate_hz, push_n);
+    out.push_back(
+        {law::Input{push_n, 1.0 / samples.rate_hz},
+         passed(DriftFreeIntegral{samples.rate_hz}, 2.0 * at(samples.frame_mps2) - wheels)});
+    left_s -= static_cast<double>(n) / samples.rate_hz;
+  }
+  return out;
+}
+
+/// Fits a law to its rides.
+class OwnMotion {
+ public:
+  OwnMotion(const law::Document& document, std::vector<Ride> rides, double rate_hz)
+      : document_{document}, rides_{std::move(rides)}, rate_hz_{rate_hz} {}
+
+  struct Found {
+    VectorXd values;
+    MatrixXd covariance;
+    double nmse_before{0.0};
+    double held_out_nmse{0.0};
+  };
+  /// Nothing where the law runs away, or the motion does not tell its unknowns apart.
+  [[nodiscard]] std::optional<Found> fit(VectorXd values, const VectorXd& scale) const;
+
+ private:
+  [[nodiscard]] Index settle() const { return static_cast<Index>(kSettleS * rate_hz_); }
+  [[nodiscard]] std::optional<VectorXd> left(const VectorXd& values) const;
+  [[nodiscard]] std::optional<MatrixXd> slopes(const VectorXd& values, const VectorXd& scale,
+                                               const VectorXd& left) const;
+  [[nodiscard]] double motion_squares() const;
+
+  const law::Document& document_;
+  std::vector<Ride> rides_;
+  double rate_hz_;
+};
+
+/// The law's velocity less the measured one, ride by ride.
+std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
+  const law::Law law = document_.with(values);
+  Index count = 0;
+  for (const Ride& r : rides_) count += r.velocity_mps.size() - 2 * settle();
+  VectorXd out{count};
+  Index at = 0;
+  for (const Ride& r : rides_) {
+    const law::Course course = law::move(law, r.push, {}, TruckSamples::kRefinement);
+    if (!course.whole) return std::nullopt;
+    const VectorXd fast =
+        passed(Baseline{DriftFreeIntegral::decimation(rate_hz_)}, course.velocity_mps);
+    const Index n = fast.size() - 2 * settle();
+    out.segment(at, n) = (fast - r.velocity_mps).segment(settle(), n);
+    at += n;
+  }
+  return out;
+}
+
+std::optional<MatrixXd> OwnMotion::slopes(const VectorXd& values, const VectorXd& scale,
+                                          const VectorXd& from) const {
+  MatrixXd out{from.size(), values.size()};
+  std::vector<std::uint8_t> moved(static_cast<std::size_t>(values.size()), 0);
+  each_beside(moved.size(), [&](std::size_t i) {
+    const auto j = static_cast<Index>(i);
+    const double step = kDifference * scale[j];
+    const auto there = left(values + step * VectorXd::Unit(values.size(), j));
+    if (!there) return;
+    out.col(j) = (*there - from) / step;
+    moved[i] = 1;
+  });
+  if (std::find(moved.begin(), moved.end(), 0) != moved.end()) return std::nullopt;
+  return out;
+}
+
+double OwnMotion::motion_squares() const {
+  double out = 0.0;
+  for (const Ride& r : rides_)
+    out += r.velocity_mps.segment(settle(), r.velocity_mps.size() - 2 * settle()).squaredNorm();
+  return out;
+}
+
+std::vector<law::Sums> blocks_of(const MatrixXd& slopes, const VectorXd& left, Index length) {
+  std::vector<law::Sums> out;
+  for (Index from = 0; from + length <= left.size(); from += length) {
+    const auto part = slopes.middleRows(from, length);
+    const auto rest = left.segment(from, length);
+    out.push_back({part.transpose() * part, part.transpose() * rest, rest.squaredNorm()});
+  }
+  return out;
+}
+
+std::optional<OwnMotion::Found> OwnMotion::fit(VectorXd values, const VectorXd& scale) const {
+  auto rest = left(values);
+  if (!rest) return std::nullopt;
+  Found out;
+  out.nmse_before = rest->squaredNorm() / motion_squares();
+  double damping = 1e-3;
+  for (int round = 0; round < kMotionRounds; ++round) {
+    const auto by = slopes(values, scale, *rest);
+    if (!by) return std::nullopt;
+    const MatrixXd products = by->transpose() * *by;
+    const VectorXd gradient = by->transpose() * *rest;
+    const double before = rest->squaredNorm();
+    bool better = false;
+    for (int tries = 0; tries < kTries && !better; ++tries, damping *= 10.0) {
+      MatrixXd damped = products;
+      damped.diagonal() *= 1.0 + damping;
+      const VectorXd there = values - damped.ldlt().solve(gradient);
+      auto then = left(there);
+      if (!then || !(then->squaredNorm() < before)) continue;
+      values = there;
+      rest = std::move(then);
+      better = true;
+      damping *= 0.003;
+    }
+    if (!better || rest->squaredNorm() > (1.0 - kLittle) * before) break;
+  }
+  const auto by = slopes(values, scale, *rest);
+  if (!by) return std::nullopt;
+  const law::BlockFit fit{blocks_of(*by, *rest, static_cast<Index>(kBlockS * rate_hz_))};
+  if (!fit.ok()) return std::nullopt;
+  out.values = values;
+  out.covariance = fit.covariance(static_cast<double>(rest->size() - values.size()));
+  out.held_out_nmse = fit.held_out_squares() / motion_squares();
+  return out;
+}
+
+/// What an unknown is of the spring: a parameter of the explanation.
+struct Figure {
+  std::string_view name{};  ///< empty: it is none
+  double times{1.0};        ///< the unknown
+  double power{1.0};        ///< of the deflection beside it: an error of scale counts as often
+};
+
+Figure figure_of(const law::Document& d, const law::Unknown& u) {
+  const Kind kind = d.law.terms[u.terms.front()].column.kind;
+  const bool stop = kind == Kind::kBumpUp || kind == Kind::kBumpDown;
+  if (stop && u.part == Part::kA) return {"bump_stop_gap"};
+  if (stop) return {"bump_stop_stiffness"};
+  if (kind == Kind::kDeflection) return {"stiffness"};
+  if (kind == Kind::kCube) return {"cubic_stiffness", 1.0, 3.0};
+  if (kind == Kind::kSquare) return {"quadratic_stiffness", 1.0, 2.0};
+  if (kind == Kind::kMagnitude) return {"asymmetric_stiffness_difference", 2.0};
+  return {};
+}
+
+void put(std::string_view name, const Estimate& value, effect::Explanation& e) {
+  if (name == "stiffness") e.final_stiffness_npm = value;
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    for (std::size_t p = 0; p < e.step[i].parameter_count; ++p)
+      if (e.step[i].parameter[p].name == name) e.step[i].parameter[p].estimate = value;
+}
+
+bool can_refine(const Explained& e) {
+  const auto* const end = e.explanation.step.begin() + e.explanation.step_count;
+  return !e.withheld && !e.drifts && !e.other && e.lateness == ChannelLateness{} &&
+         std::any_of(e.explanation.step.begin(), end,
+                     [](const effect::Step& s) { return is_elastic(s.chosen.effect); });
+}
+
+/// Where friction slides, its level; how far apart the equations' and the motion's are.
+double apart(const law::Document& d, const VectorXd& values) {
+  for (std::size_t i = 0; i < d.unknowns.size(); ++i) {
+    const law::Term& term = d.law.terms[d.unknowns[i].terms.front()];
+    if (term.column.kind == Kind::kSign && d.unknowns[i].part == Part::kCoefficient)
+      return std::abs(values[static_cast<Index>(i)] / term.coefficient - 1.0);
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out) {
+  if (!can_refine(out)) return;
+  const law::Document document = law_to_move(config, out);
+  if (!document.not_in_it.empty() || !law::FreeRun::can(document.law)) return;
+  const TruckSamples samples = read_truck_samples(config, source, detect_source(config, source));
+  std::vector<Ride> rides = rides_of(samples, document.law.mass_kg);
+  if (rides.empty()) return;
+  const VectorXd rows = document.values();
+  VectorXd scale = rows.cwiseAbs();
+  scale[scale.size() - 1] = kOffsetShare * out.explanation.final_coulomb_n.value;
+  const auto found = OwnMotion{document, std::move(rides), samples.rate_hz}.fit(rows, scale);
+  if (!found || !(found->held_out_nmse < found->nmse_before)) return;
+  const double level = apart(document, found->values);
+  if (level > kOtherLevel) return;
+  std::vector<std::pair<std::string_view, Estimate>> refined;
+  for (std::size_t i = 0; i < document.unknowns.size(); ++i) {
+    const Figure figure = figure_of(document, document.unknowns[i]);
+    if (figure.name.empty()) continue;
+    const auto j = static_cast<Index>(i);
+    const double value = figure.times * found->values[j];
+    if (figure.name.starts_with("bump_stop") && !(value > 0.0)) return;
+    const double by_scale = figure.power * std::hypot(level, kGain) * value;
+    const double by_motion = figure.times * std::sqrt(found->covariance(j, j));
+    refined.emplace_back(figure.name, Estimate{value, std::hypot(by_motion, by_scale)});
+  }
+  for (const auto& [name, value] : refined) put(name, value, out.explanation);
+  out.notes.push_back(fmt::format(
+      "Spring and what bends it are by the frame's own motion on its wheelsets: of its velocity's "
+      "square they leave {:.3g}, held out, and the equations' figures {:.3g}.",
+      found->held_out_nmse, found->nmse_before));
+}
+
+}  // namespace dampline::app
