@@ -75,7 +75,7 @@ class FreeRun {
   struct Rate {
     double x{0.0};
     double v{0.0};
-    std::array<double, kMostMemories> z;  ///< of the memories that there are
+    std::array<double, kMostMemories> z{};
   };
   enum class Mode : std::int8_t { kBack = -1, kStuck = 0, kForth = 1 };
 

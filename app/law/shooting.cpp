@@ -105,6 +105,7 @@ class Shooting {
   Index length_{0};
   Index samples_{0};
   double difference_{kDifferences[0]};
+  bool both_ways_{false};    ///< central differences
   double variance_m2_{0.0};  ///< summed
   double range_m_{0.0};
   double period_s_{1.0};
@@ -239,38 +240,35 @@ bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unk
   const Index p = with_unknowns ? unknowns.size() : 0;
   const Law law = law_of_(unknowns);
   const std::vector<Regressor> memories = memories_of(law);
-  std::vector<Law> beside;
-  for (Index j = 0; j < p; ++j) {
-    VectorXd there = unknowns;
-    there[j] += difference_ * scale_[j];
-    beside.push_back(law_of_(there));
-  }
   if (!follow_segments(law, refinement, memories.size(), p, out)) return false;
-  struct Slope {
-    std::size_t segment;
-    Index column;  ///< of the unknowns, then of the state
-  };
-  std::vector<Slope> slopes;
+  // Of a segment, a column: of the unknowns, then of the state.
+  std::vector<std::pair<std::size_t, Index>> slopes;
   for (std::size_t i = 0; i < out.size(); ++i)
-    for (Index k = 0; k < p + out[i].by_state.cols(); ++k) slopes.push_back({i, k});
+    for (Index k = 0; k < p + out[i].by_state.cols(); ++k) slopes.emplace_back(i, k);
   std::atomic<bool> stayed{true};
   each_beside(slopes.size(), [&](std::size_t n) {
     if (!stayed) return;
-    const Segment& s = segments_[slopes[n].segment];
+    const std::size_t segment = slopes[n].first;
+    const Index j = slopes[n].second;
+    const Segment& s = segments_[segment];
     const Drive& d = drives_[s.drive];
-    Linear& l = out[slopes[n].segment];
-    const Index j = slopes[n].column;
+    Linear& l = out[segment];
     const bool of_law = j < p;
     const double step = of_law ? difference_ * scale_[j] : state_step(s, memories, j - p);
-    State from = of_law ? s.start : moved_state(s.start, j - p, step);
+    const auto follows = [&](double by, VectorXd& path) {
+      VectorXd there = unknowns;
+      if (of_law) there[j] += by;
+      const Law law_there = of_law ? law_of_(there) : law;
+      State from = of_law ? s.start : moved_state(s.start, j - p, by);
+      if (!run(FreeRun{law_there, d.input, refinement}, s, from, path)) stayed = false;
+      return stayed.load();
+    };
     VectorXd path;
-    if (!run(FreeRun{of_law ? beside[static_cast<std::size_t>(j)] : law, d.input, refinement}, s,
-             from, path)) {
-      stayed = false;
-      return;
-    }
+    VectorXd other = d.deflection_m.segment(s.begin, s.end - s.begin) + l.left;
+    const bool both = both_ways_ && j < p + 2;
+    if (!follows(step, path) || (both && !follows(-step, other))) return;
     auto column = of_law ? l.by_unknowns.col(j) : l.by_state.col(j - p);
-    column = (left_of(d, s.begin, path) - l.left) / step;
+    column = (left_of(d, s.begin, path) - left_of(d, s.begin, other)) / (both ? 2.0 * step : step);
   });
   return stayed;
 }
@@ -417,7 +415,10 @@ Shot Shooting::shot_of(const VectorXd& unknowns, double squares) const {
 
 Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   std::vector<Linear> parts;
-  if (!std::isfinite(squares) || !linearise(unknowns, 1, true, parts)) return {};
+  both_ways_ = true;  // what the unknowns share cancels, and the error of one way would be left
+  const bool stayed = std::isfinite(squares) && linearise(unknowns, 1, true, parts);
+  both_ways_ = false;
+  if (!stayed) return {};
   const Index p = unknowns.size();
   std::vector<Linear> clean;
   clean.reserve(parts.size());

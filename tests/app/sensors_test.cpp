@@ -28,6 +28,9 @@ const Parameter& parameter(const RunResult& result, const char* name) {
   return *found;
 }
 
+/// The name of a row.
+constexpr auto name_of_case = [](const auto& row) { return std::string{row.param.name}; };
+
 struct Sensing {
   const char* name;
   PlainSensors sensors;
@@ -51,12 +54,14 @@ TEST_P(PlainSensorsTest, LeaveLevelAndSpringWithinTheirDeviations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, PlainSensorsTest,
+                         testing::Values(Sensing{"Noisy", {.noise_mps2 = 0.1}, 0.04},
+                                         Sensing{"Slow", {.rate_hz = 150.0, .corner_hz = 60.0}}),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(NightlyRows, PlainSensorsTest,
                          testing::Values(Sensing{"EightBits", {.bits = 8}, 0.04},
-                                         Sensing{"Noisy", {.noise_mps2 = 0.1}, 0.04},
                                          Sensing{"LowCorner", {.corner_hz = 60.0}},
-                                         Sensing{"Slow", {.rate_hz = 150.0, .corner_hz = 60.0}},
                                          Sensing{"Fast", {.rate_hz = 1000.0, .corner_hz = 400.0}}),
-                         [](const auto& sensing) { return std::string{sensing.param.name}; });
+                         name_of_case);
 
 class OpenLowPassTest : public testing::TestWithParam<Sensing> {};
 
@@ -78,14 +83,16 @@ TEST_P(OpenLowPassTest, HasNothingToExplain) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Rows, OpenLowPassTest,
+                         testing::Values(Sensing{"At300", {}},
+                                         Sensing{"At1000Behind100", {.rate_hz = 1000.0}}),
+                         name_of_case);
 INSTANTIATE_TEST_SUITE_P(
-    Rows, OpenLowPassTest,
-    testing::Values(Sensing{"At300", {}},
-                    Sensing{"At400Behind160", {.rate_hz = 400.0, .corner_hz = 160.0}},
+    NightlyRows, OpenLowPassTest,
+    testing::Values(Sensing{"At400Behind160", {.rate_hz = 400.0, .corner_hz = 160.0}},
                     Sensing{"At600Behind240", {.rate_hz = 600.0, .corner_hz = 240.0}},
-                    Sensing{"At1000Behind400", {.rate_hz = 1000.0, .corner_hz = 400.0}},
-                    Sensing{"At1000Behind100", {.rate_hz = 1000.0}}),
-    [](const auto& sensing) { return std::string{sensing.param.name}; });
+                    Sensing{"At1000Behind400", {.rate_hz = 1000.0, .corner_hz = 400.0}}),
+    name_of_case);
 
 struct Declared {
   const char* name;
@@ -119,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Corners, WrongLowPassTest,
                                          Declared{"ALittleTooHigh", 80.0, 100.0},
                                          Declared{"TooLow", 80.0, 60.0},
                                          Declared{"Unknown", 60.0, 0.0}),
-                         [](const auto& declared) { return std::string{declared.param.name}; });
+                         name_of_case);
 
 /// `identify` would trust a level that is 1 to 4 % off.
 TEST(PlainSensorsLowPass, IsNamedByIdentifyWhereItWouldTrustTheLevel) {
@@ -190,10 +197,12 @@ TEST_P(LateChannelsTest, AreTimeSkewsAndNothingElse) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, LateChannelsTest,
-                         testing::Values(Delays{"OneAfterTheOther", {0.0, 1.1e-3, 2.2e-3}},
-                                         Delays{"TheOtherWayRound", {2.2e-3, 1.1e-3, 0.0}},
+                         testing::Values(Delays{"OneAfterTheOther", {0.0, 1.1e-3, 2.2e-3}}),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(NightlyCases, LateChannelsTest,
+                         testing::Values(Delays{"TheOtherWayRound", {2.2e-3, 1.1e-3, 0.0}},
                                          Delays{"OneWheelset", {0.0, 0.8e-3, 0.0}}),
-                         [](const auto& delays) { return std::string{delays.param.name}; });
+                         name_of_case);
 
 /// Motion of the wheelsets that the sampling folds is not the noise that was declared.
 TEST(PlainSensorsNoiseNightly, IsNotExceededByWhatIsFolded) {
