@@ -24,14 +24,15 @@ std::vector<TruckSamples::Stretch> TruckSamples::stretches() const {
   return out;
 }
 
-TruckSamples read_truck_samples(const Config& config, const SourceOptions& source,
-                                SourceKind kind) {
+TruckSamples read_truck_samples(const Config& config, const SourceOptions& source, SourceKind kind,
+                                double most_s) {
   static_cast<void>(estimator_config(config));
   const auto feed = open_feed(config, source, kind);
   TruckRun<kIdentifyParts> run{config, feed->signals()};
+  const double nominal_hz = truck_rate_hz(config.input);
   TruckSamples out;
   run.watch([&](const Sample& sample, const UpdateResult& /*unused*/) {
-    if (sample.spoilt) return;
+    if (sample.spoilt || static_cast<double>(out.tick.size()) >= most_s * nominal_hz) return;
     out.tick.push_back(sample.tick);
     out.frame_mps2.push_back(sample.accel_mps2[0]);
     out.wheelsets_mps2.push_back(sample.accel_mps2[1] + sample.accel_mps2[2]);
@@ -41,7 +42,6 @@ TruckSamples read_truck_samples(const Config& config, const SourceOptions& sourc
   if (out.tick.size() < 2)
     throw RunError{
         fmt::format("{}: found {} samples, expected some seconds", source.path, out.tick.size())};
-  const double nominal_hz = truck_rate_hz(config.input);
   out.rate_hz = nominal_hz * make_correction(rate_of(*feed, run), nominal_hz, source.path).ratio;
   return out;
 }

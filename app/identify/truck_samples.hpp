@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "app/config/config.hpp"
@@ -31,8 +32,9 @@ struct TruckSamples {
   [[nodiscard]] std::vector<Stretch> stretches() const;
 };
 
-/// Throws RunError where the record holds hardly a sample, UsageError.
-[[nodiscard]] TruckSamples read_truck_samples(const Config& config, const SourceOptions& source,
-                                              SourceKind kind);
+/// The first `most_s` of a record. Throws RunError where it holds hardly a sample, UsageError.
+[[nodiscard]] TruckSamples read_truck_samples(
+    const Config& config, const SourceOptions& source, SourceKind kind,
+    double most_s = std::numeric_limits<double>::infinity());
 
 }  // namespace dampline::app

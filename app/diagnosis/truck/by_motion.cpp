@@ -98,10 +98,8 @@ struct Ride {
 
 std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
   std::vector<Ride> out;
-  double left_s = kLongestRideS;
-  const auto most = [&] { return static_cast<Index>(left_s * samples.rate_hz); };
   for (const TruckSamples::Stretch& s : samples.stretches()) {
-    const Index n = std::min(s.to - s.from, most());
+    const Index n = s.to - s.from;
     if (static_cast<double>(n) < 4.0 * kSettleS * samples.rate_hz) continue;
     const auto at = [&](const std::vector<double>& v) -> VectorXd {
       return Eigen::Map<const VectorXd>(v.data() + s.from, n);
@@ -112,7 +110,6 @@ std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
     out.push_back(
         {law::Input{push_n, 1.0 / samples.rate_hz},
          passed(DriftFreeIntegral{samples.rate_hz}, 2.0 * at(samples.frame_mps2) - wheels)});
-    left_s -= static_cast<double>(n) / samples.rate_hz;
   }
   return out;
 }
@@ -281,7 +278,8 @@ void refine_by_motion(const Config& config, const SourceOptions& source, Explain
   if (!can_refine(out)) return;
   const law::Document document = law_to_move(config, out);
   if (!document.not_in_it.empty() || !law::FreeRun::can(document.law)) return;
-  const TruckSamples samples = read_truck_samples(config, source, detect_source(config, source));
+  const TruckSamples samples =
+      read_truck_samples(config, source, detect_source(config, source), kLongestRideS);
   std::vector<Ride> rides = rides_of(samples, document.law.mass_kg);
   if (rides.empty()) return;
   const VectorXd rows = document.values();
