@@ -14,6 +14,16 @@ constexpr double kSingular = 1e-14;
 
 }  // namespace
 
+void append_blocks(const MatrixXd& slopes, const VectorXd& left, Eigen::Index length,
+                   std::vector<Sums>& out) {
+  for (Eigen::Index from = 0; from < left.size(); from += length) {
+    const Eigen::Index n = std::min(length, left.size() - from);
+    const auto part = slopes.middleRows(from, n);
+    const auto rest = left.segment(from, n);
+    out.push_back({part.transpose() * part, part.transpose() * rest, rest.squaredNorm()});
+  }
+}
+
 BlockFit::BlockFit(std::vector<Sums> blocks) : blocks_{std::move(blocks)} {
   const auto p = blocks_.front().gradient.size();
   all_ = {MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};

@@ -13,6 +13,11 @@ struct Sums {
   double squares{0.0};
 };
 
+/// Those of blocks of `length` samples, the last one shorter, behind those of `out`. `slopes`:
+/// [n, p], `left`: [n].
+void append_blocks(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& left, Eigen::Index length,
+                   std::vector<Sums>& out);
+
 /// A fit at its least squares, by its sums over blocks in time: how certain the unknowns are.
 class BlockFit {
  public:

@@ -36,6 +36,9 @@ constexpr std::array kDifferences{1e-6, 1e-4, 3e-3};
 constexpr double kMostMove = 0.5;  // of an unknown that stays above 0
 constexpr Index kFewestBlocks = 20;
 
+/// Slopes that are taken: by the states, by the unknowns too, all by differences both ways.
+enum class Slopes : std::uint8_t { kOfStates, kAll, kBothWays };
+
 struct Segment {
   std::size_t drive;
   Index begin;
@@ -85,7 +88,7 @@ class Shooting {
                                   Index k) const;
   [[nodiscard]] bool follow_segments(const Law& law, int refinement, std::size_t memories,
                                      Index unknowns, std::vector<Linear>& out);
-  [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
+  [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, Slopes kind,
                                std::vector<Linear>& out);
   [[nodiscard]] Sums sum(const std::vector<Linear>& parts) const;
   [[nodiscard]] std::vector<Segment> moved(const std::vector<Linear>& parts,
@@ -105,7 +108,6 @@ class Shooting {
   Index length_{0};
   Index samples_{0};
   double difference_{kDifferences[0]};
-  bool both_ways_{false};    ///< central differences
   double variance_m2_{0.0};  ///< summed
   double range_m_{0.0};
   double period_s_{1.0};
@@ -235,9 +237,9 @@ bool Shooting::follow_segments(const Law& law, int refinement, std::size_t memor
 }
 
 /// The slopes are taken beside one another: a run of the law each, which is what all this costs.
-bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unknowns,
+bool Shooting::linearise(const VectorXd& unknowns, int refinement, Slopes kind,
                          std::vector<Linear>& out) {
-  const Index p = with_unknowns ? unknowns.size() : 0;
+  const Index p = kind == Slopes::kOfStates ? 0 : unknowns.size();
   const Law law = law_of_(unknowns);
   const std::vector<Regressor> memories = memories_of(law);
   if (!follow_segments(law, refinement, memories.size(), p, out)) return false;
@@ -255,20 +257,24 @@ bool Shooting::linearise(const VectorXd& unknowns, int refinement, bool with_unk
     Linear& l = out[segment];
     const bool of_law = j < p;
     const double step = of_law ? difference_ * scale_[j] : state_step(s, memories, j - p);
-    const auto follows = [&](double by, VectorXd& path) {
+    const auto left_at = [&](double by, VectorXd& left) {
       VectorXd there = unknowns;
       if (of_law) there[j] += by;
       const Law law_there = of_law ? law_of_(there) : law;
       State from = of_law ? s.start : moved_state(s.start, j - p, by);
-      if (!run(FreeRun{law_there, d.input, refinement}, s, from, path)) stayed = false;
-      return stayed.load();
+      if (!run(FreeRun{law_there, d.input, refinement}, s, from, left)) return false;
+      left = left_of(d, s.begin, left);
+      return true;
     };
-    VectorXd path;
-    VectorXd other = d.deflection_m.segment(s.begin, s.end - s.begin) + l.left;
-    const bool both = both_ways_ && j < p + 2;
-    if (!follows(step, path) || (both && !follows(-step, other))) return;
+    VectorXd ahead;
+    VectorXd behind = l.left;
+    const bool both = kind == Slopes::kBothWays && j < p + 2;
+    if (!left_at(step, ahead) || (both && !left_at(-step, behind))) {
+      stayed = false;
+      return;
+    }
     auto column = of_law ? l.by_unknowns.col(j) : l.by_state.col(j - p);
-    column = (left_of(d, s.begin, path) - left_of(d, s.begin, other)) / (both ? 2.0 * step : step);
+    column = (ahead - behind) / (both ? 2.0 * step : step);
   });
   return stayed;
 }
@@ -312,7 +318,7 @@ bool Shooting::settle(const VectorXd& unknowns) {
   double squares = squares_of(unknowns, segments_);
   std::vector<Linear> parts;
   for (int i = 0; i < kStateRounds; ++i) {
-    if (!linearise(unknowns, 1, false, parts)) return false;
+    if (!linearise(unknowns, 1, Slopes::kOfStates, parts)) return false;
     std::vector<Segment> there = moved(parts, {});
     const double then = squares_of(unknowns, there, segments_);
     if (!(then < squares)) break;
@@ -331,7 +337,7 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
   std::size_t width = 0;
   std::vector<Linear> parts;
   for (int round = 0; round < kRounds; ++round) {
-    if (!linearise(unknowns, 1, true, parts)) return false;
+    if (!linearise(unknowns, 1, Slopes::kAll, parts)) return false;
     const Sums sums = sum(parts);
     const VectorXd diagonal = sums.products.diagonal();
     bool better = false;
@@ -374,13 +380,7 @@ std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts) const {
   const Index block = std::max<Index>(
       1, std::min(static_cast<Index>(2.0 * period_s_ / interval_s()), samples_ / kFewestBlocks));
   std::vector<Sums> out;
-  for (const Linear& l : parts)
-    for (Index from = 0; from < l.left.size(); from += block) {
-      const Index n = std::min(block, l.left.size() - from);
-      const auto slopes = l.by_unknowns.middleRows(from, n);
-      out.push_back({slopes.transpose() * slopes, slopes.transpose() * l.left.segment(from, n),
-                     l.left.segment(from, n).squaredNorm()});
-    }
+  for (const Linear& l : parts) append_blocks(l.by_unknowns, l.left, block, out);
   return out;
 }
 
@@ -415,10 +415,8 @@ Shot Shooting::shot_of(const VectorXd& unknowns, double squares) const {
 
 Shot Shooting::judge(const VectorXd& unknowns, double squares) {
   std::vector<Linear> parts;
-  both_ways_ = true;  // what the unknowns share cancels, and the error of one way would be left
-  const bool stayed = std::isfinite(squares) && linearise(unknowns, 1, true, parts);
-  both_ways_ = false;
-  if (!stayed) return {};
+  // What the unknowns share cancels, and the error of one way would be left.
+  if (!std::isfinite(squares) || !linearise(unknowns, 1, Slopes::kBothWays, parts)) return {};
   const Index p = unknowns.size();
   std::vector<Linear> clean;
   clean.reserve(parts.size());
@@ -430,7 +428,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
                                   2.0 * static_cast<double>(segments_.size()));
   // Steps twice as fine would go this much farther.
   std::vector<Linear> fine;
-  if (linearise(unknowns, 2, false, fine)) {
+  if (linearise(unknowns, 2, Slopes::kOfStates, fine)) {
     VectorXd gradient = VectorXd::Zero(p);
     for (std::size_t i = 0; i < fine.size(); ++i)
       gradient += clean[i].by_unknowns.transpose() * (fine[i].left - parts[i].left);

@@ -5,8 +5,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -90,26 +90,30 @@ VectorXd passed(Filter filter, const VectorXd& values) {
   return out;
 }
 
+/// Samples at either end of a stretch that are not compared.
+Index settle_of(double rate_hz) { return static_cast<Index>(kSettleS * rate_hz); }
+
 /// A stretch of the record: what moves the law, and the velocity that it is to have.
 struct Ride {
   law::Input push;
-  VectorXd velocity_mps;  ///< without what is slower than about 1 Hz
+  VectorXd velocity_mps;  ///< without what is slower than about 1 Hz, and both ends
 };
 
 std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
   std::vector<Ride> out;
   for (const TruckSamples::Stretch& s : samples.stretches()) {
     const Index n = s.to - s.from;
-    if (static_cast<double>(n) < 4.0 * kSettleS * samples.rate_hz) continue;
+    const Index settle = settle_of(samples.rate_hz);
+    if (n < 4 * settle) continue;
     const auto at = [&](const std::vector<double>& v) -> VectorXd {
       return Eigen::Map<const VectorXd>(v.data() + s.from, n);
     };
     const VectorXd wheels = at(samples.wheelsets_mps2);
     VectorXd push_n = -law_mass_kg * (wheels.array() - wheels.mean());
     take_slow(kDriftHz, samples.rate_hz, push_n);
-    out.push_back(
-        {law::Input{push_n, 1.0 / samples.rate_hz},
-         passed(DriftFreeIntegral{samples.rate_hz}, 2.0 * at(samples.frame_mps2) - wheels)});
+    out.push_back({law::Input{push_n, 1.0 / samples.rate_hz},
+                   passed(DriftFreeIntegral{samples.rate_hz}, 2.0 * at(samples.frame_mps2) - wheels)
+                       .segment(settle, n - 2 * settle)});
   }
   return out;
 }
@@ -130,7 +134,6 @@ class OwnMotion {
   [[nodiscard]] std::optional<Found> fit(VectorXd values, const VectorXd& scale) const;
 
  private:
-  [[nodiscard]] Index settle() const { return static_cast<Index>(kSettleS * rate_hz_); }
   [[nodiscard]] std::optional<VectorXd> left(const VectorXd& values) const;
   [[nodiscard]] std::optional<MatrixXd> slopes(const VectorXd& values, const VectorXd& scale,
                                                const VectorXd& left) const;
@@ -145,7 +148,7 @@ class OwnMotion {
 std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
   const law::Law law = document_.with(values);
   Index count = 0;
-  for (const Ride& r : rides_) count += r.velocity_mps.size() - 2 * settle();
+  for (const Ride& r : rides_) count += r.velocity_mps.size();
   VectorXd out{count};
   Index at = 0;
   for (const Ride& r : rides_) {
@@ -153,8 +156,8 @@ std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
     if (!course.whole) return std::nullopt;
     const VectorXd fast =
         passed(Baseline{DriftFreeIntegral::decimation(rate_hz_)}, course.velocity_mps);
-    const Index n = fast.size() - 2 * settle();
-    out.segment(at, n) = (fast - r.velocity_mps).segment(settle(), n);
+    const Index n = r.velocity_mps.size();
+    out.segment(at, n) = fast.segment(settle_of(rate_hz_), n) - r.velocity_mps;
     at += n;
   }
   return out;
@@ -163,33 +166,23 @@ std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
 std::optional<MatrixXd> OwnMotion::slopes(const VectorXd& values, const VectorXd& scale,
                                           const VectorXd& from) const {
   MatrixXd out{from.size(), values.size()};
-  std::vector<std::uint8_t> moved(static_cast<std::size_t>(values.size()), 0);
-  each_beside(moved.size(), [&](std::size_t i) {
+  std::atomic<bool> stayed{true};
+  each_beside(static_cast<std::size_t>(values.size()), [&](std::size_t i) {
     const auto j = static_cast<Index>(i);
     const double step = kDifference * scale[j];
     const auto there = left(values + step * VectorXd::Unit(values.size(), j));
-    if (!there) return;
-    out.col(j) = (*there - from) / step;
-    moved[i] = 1;
+    if (there)
+      out.col(j) = (*there - from) / step;
+    else
+      stayed = false;
   });
-  if (std::find(moved.begin(), moved.end(), 0) != moved.end()) return std::nullopt;
+  if (!stayed) return std::nullopt;
   return out;
 }
 
 double OwnMotion::motion_squares() const {
   double out = 0.0;
-  for (const Ride& r : rides_)
-    out += r.velocity_mps.segment(settle(), r.velocity_mps.size() - 2 * settle()).squaredNorm();
-  return out;
-}
-
-std::vector<law::Sums> blocks_of(const MatrixXd& slopes, const VectorXd& left, Index length) {
-  std::vector<law::Sums> out;
-  for (Index from = 0; from + length <= left.size(); from += length) {
-    const auto part = slopes.middleRows(from, length);
-    const auto rest = left.segment(from, length);
-    out.push_back({part.transpose() * part, part.transpose() * rest, rest.squaredNorm()});
-  }
+  for (const Ride& r : rides_) out += r.velocity_mps.squaredNorm();
   return out;
 }
 
@@ -199,9 +192,8 @@ std::optional<OwnMotion::Found> OwnMotion::fit(VectorXd values, const VectorXd& 
   Found out;
   out.nmse_before = rest->squaredNorm() / motion_squares();
   double damping = 1e-3;
-  for (int round = 0; round < kMotionRounds; ++round) {
-    const auto by = slopes(values, scale, *rest);
-    if (!by) return std::nullopt;
+  auto by = slopes(values, scale, *rest);
+  for (int round = 0; by && round < kMotionRounds; ++round) {
     const MatrixXd products = by->transpose() * *by;
     const VectorXd gradient = by->transpose() * *rest;
     const double before = rest->squaredNorm();
@@ -217,11 +209,14 @@ std::optional<OwnMotion::Found> OwnMotion::fit(VectorXd values, const VectorXd& 
       better = true;
       damping *= 0.003;
     }
-    if (!better || rest->squaredNorm() > (1.0 - kLittle) * before) break;
+    if (!better) break;
+    by = slopes(values, scale, *rest);
+    if (rest->squaredNorm() > (1.0 - kLittle) * before) break;
   }
-  const auto by = slopes(values, scale, *rest);
   if (!by) return std::nullopt;
-  const law::BlockFit fit{blocks_of(*by, *rest, static_cast<Index>(kBlockS * rate_hz_))};
+  std::vector<law::Sums> blocks;
+  law::append_blocks(*by, *rest, static_cast<Index>(kBlockS * rate_hz_), blocks);
+  const law::BlockFit fit{std::move(blocks)};
   if (!fit.ok()) return std::nullopt;
   out.values = values;
   out.covariance = fit.covariance(static_cast<double>(rest->size() - values.size()));
