@@ -146,6 +146,8 @@ struct Form {
   bool plainer{false};  ///< than what the equations have
 };
 
+constexpr std::array kFadingShapes{Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly};
+
 /// The model in other forms that the equations hardly tell apart where the motion is noisy:
 /// friction without a width of its own, the other ways in which friction falls with speed, a memory
 /// that yields smoothly. The plainer ones first.
@@ -161,7 +163,7 @@ std::vector<Form> other_forms(const Model& model, const Scale& scale) {
   for (const Form& start : starts)
     for (std::size_t i = 0; i < model.columns.size(); ++i) {
       const Regressor& c = start.model.columns[i];
-      for (const Kind shape : {Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly}) {
+      for (const Kind shape : kFadingShapes) {
         if (!law::is_fading(c.kind) || c.kind == shape) continue;
         out.push_back(start);
         out.back().model.columns[i].kind = shape;
@@ -177,6 +179,12 @@ double samples_of(const std::vector<law::Drive>& drives) {
   double out = 0.0;
   for (const law::Drive& d : drives) out += static_cast<double>(d.deflection_m.size());
   return out;
+}
+
+/// How many times as likely as another, where noise is white.
+double as_likely(const law::Shot& shot, const law::Shot& other,
+                 const std::vector<law::Drive>& drives) {
+  return std::pow(other.nmse / shot.nmse, 0.5 * samples_of(drives));
 }
 
 /// Which of both is kept.
@@ -257,6 +265,60 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
       take(move_quickly(form.model, form.joint, with_speeds(from, times), scale, part), false);
     }
   return best;
+}
+
+/// The model with another way in which friction falls with speed, moved over the whole; nothing
+/// where a short part of the records rules it out, or it does not move.
+std::optional<Moved> in_other_form(const Moved& best, const Moved& best_shortly, std::size_t column,
+                                   Kind shape, const Scale& scale,
+                                   const std::vector<law::Drive>& part,
+                                   const std::vector<law::Drive>& drives) {
+  Moved other = best;
+  other.model.columns[column].kind = shape;
+  other = move_quickly(other.model, other.joint, best.shot.unknowns, scale, part);
+  if (!other.shot.ok || as_likely(other.shot, best_shortly.shot, part) < kRuledOut) return {};
+  other = move(other.model, other.joint, other.shot.unknowns, scale, drives);
+  if (!other.shot.ok) return {};
+  return other;
+}
+
+/// What a part of a record leaves open in the ways in which friction falls with speed, the whole
+/// one decides; and where it does not either, the others widen the deviations by what they are
+/// likely (averaging over models; Hoeting, Madigan, Raftery and Volinsky, 1999). `best` has moved
+/// over the whole.
+Moved surest_of_fading(const Moved& best, const Scale& scale, const std::vector<law::Drive>& part,
+                       const std::vector<law::Drive>& drives) {
+  const auto fading = std::find_if(best.model.columns.begin(), best.model.columns.end(),
+                                   [](const Regressor& c) { return law::is_fading(c.kind); });
+  if (fading == best.model.columns.end() || best.shot.nmse < kExact) return best;
+  const auto column = static_cast<std::size_t>(fading - best.model.columns.begin());
+  const Moved shortly = move_quickly(best.model, best.joint, best.shot.unknowns, scale, part);
+  if (!shortly.shot.ok) return best;
+  std::vector<Moved> all{best};
+  double segment_s = best.shot.segment_s;
+  for (const Kind shape : kFadingShapes) {
+    if (shape == fading->kind) continue;
+    auto other = in_other_form(best, shortly, column, shape, scale, part, drives);
+    if (!other) continue;
+    segment_s = std::min(segment_s, other->shot.segment_s);
+    all.push_back(std::move(*other));
+  }
+  if (all.size() == 1) return best;
+  std::vector<law::Shot> seen;  // over segments of one length: longer ones leave more of any law
+  for (const Moved& m : all)
+    seen.push_back(
+        law::follow(law_at(m.model, m.joint, scale), m.shot.unknowns, drives, segment_s));
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < all.size(); ++i)
+    if (seen[i].ok && as_likely(seen[i], seen[first], drives) > 1.0) first = i;
+  Moved out = all[first];
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == first || !seen[i].ok) continue;
+    const double ratio = as_likely(seen[i], seen[first], drives);
+    const Eigen::VectorXd apart = all[i].shot.unknowns - out.shot.unknowns;
+    out.shot.covariance += ratio / (1.0 + ratio) * apart * apart.transpose();
+  }
+  return out;
 }
 
 bool can_move(const std::vector<Series>& records, const Model& model, const Scale& scale) {
@@ -389,6 +451,7 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
   best = move(best.model, best.joint, start, scale, drives);
   if (!best.shot.ok) best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;
+  best = surest_of_fading(best, scale, drives_of(records, kShortly), drives);
   judge(best, drives, scale, noise_m);
   if (best.model.free_run.by_motion) {
     const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);
