@@ -254,12 +254,19 @@ TEST(ADrivenMass, HasASpringBehindADashpotWhereThatIsLookedFor) {
   }
 }
 
-/// 10 kg on a spring with dry and viscous friction, 1000 Hz, 40 s, which sticks; the force is
-/// measured with noise of 5 % of its rms.
-std::string sticking(unsigned seed) {
+/// 10 kg on a spring with dry and viscous friction, 1000 Hz, 40 s, which sticks.
+struct Sticking {
+  unsigned seed{1};
+  double force_noise_n{0.0};
+  double deflection_noise_m{0.0};
+  double coulomb_n{25.0};
+  double falls_by_n{0.0};  ///< as the speed rises: exp(-|v| / 0.05 m/s) of it is left
+};
+
+std::string record_of(const Sticking& s) {
   constexpr int kSubsteps = 40;
   constexpr double kStepS = 1e-3 / kSubsteps;
-  std::mt19937_64 random{seed};
+  std::mt19937_64 random{s.seed};
   std::uniform_real_distribution<double> any{0.0, 2.0 * M_PI};
   std::normal_distribution<double> noise;
   std::array<double, 40> phases{};
@@ -270,6 +277,9 @@ std::string sticking(unsigned seed) {
       sum += std::cos(2.0 * M_PI * (0.3 + 0.3 * static_cast<double>(k)) * t + phases[k]);
     return 55.0 * sum / std::sqrt(0.5 * static_cast<double>(phases.size()));
   };
+  const auto friction_n = [&](double speed) {
+    return s.coulomb_n + s.falls_by_n * std::exp(-speed / 0.05);
+  };
   std::string out = "time_s,deflection_m,force_n\n";
   double x = 0.0;
   double v = 0.0;
@@ -277,12 +287,15 @@ std::string sticking(unsigned seed) {
     const double t = i * kStepS;
     const double push_n = force_n(t);
     if (i % kSubsteps == 0)
-      out += fmt::format("{:.6f},{:.12g},{:.9g}\n", t, x, push_n + 2.75 * noise(random));
+      out += fmt::format("{:.6f},{:.12g},{:.9g}\n", t, x + s.deflection_noise_m * noise(random),
+                         push_n + s.force_noise_n * noise(random));
     const double free_n = push_n - 18.0 * v - 3600.0 * x;
-    double next = v + kStepS * 0.1 * (free_n - std::copysign(25.0, v));
+    const double most_n = friction_n(0.0);
+    double next = v + kStepS * 0.1 * (free_n - std::copysign(friction_n(std::abs(v)), v));
     if (v == 0.0 || next * v < 0.0)
-      next = std::abs(free_n) <= 25.0 ? 0.0 : kStepS * 0.1 * (free_n - std::copysign(25.0, free_n));
-    x += kStepS * 0.5 * (v + next);
+      next = std::abs(free_n) <= most_n ? 0.0
+                                        : kStepS * 0.1 * (free_n - std::copysign(most_n, free_n));
+    x += kStepS * next;  // the velocity stands half a step later: second order
     v = next;
   }
   return out;
@@ -295,7 +308,8 @@ TEST(ADrivenMassNightly, IsCompleteWhereItSticksAndItsForceIsNoisy) {
     config.model.base = {"coulomb", "viscous"};
     config.model.inertia = "identify";
     config.model.stiffness = "identify";
-    const rig::Explanation found = dampline::test::explained(sticking(seed), config);
+    const rig::Explanation found =
+        dampline::test::explained(record_of({.seed = seed, .force_noise_n = 2.75}), config);
     EXPECT_EQ(found.verdict(), "complete") << summarize(found);
     const std::vector<std::pair<const char*, double>> truths{
         {"coulomb", 25.0}, {"moving_mass", 10.0}, {"stiffness", 3600.0}, {"viscous", 18.0}};
@@ -303,6 +317,26 @@ TEST(ADrivenMassNightly, IsCompleteWhereItSticksAndItsForceIsNoisy) {
       dampline::test::expect_size(found, name, truth, 2.5);
       EXPECT_NEAR(value_of(found, name), truth, 0.02 * truth) << name << ", seed " << seed;
     }
+  }
+}
+
+/// A part of these two records speaks for another of the three ways in which friction falls with
+/// speed; of seeds 5 to 16 they are the two by which figures were 8 to 20 deviations off.
+TEST(ADrivenMassNightly, HasTheFrictionThatFallsAsItDoesBehindMuchNoise) {
+  for (const unsigned seed : {7U, 16U}) {
+    Config config;
+    config.model.base = {"coulomb", "viscous"};
+    config.model.candidates = {"stribeck"};
+    config.model.inertia = config.model.stiffness = "identify";
+    const rig::Explanation found = dampline::test::explained(
+        record_of(
+            {.seed = seed, .deflection_noise_m = 4e-4, .coulomb_n = 15.0, .falls_by_n = 12.0}),
+        config);
+    EXPECT_TRUE(found.final.free_run.by_motion) << summarize(found);
+    const std::vector<std::pair<const char*, double>> truths{
+        {"coulomb", 15.0}, {"moving_mass", 10.0},    {"stiffness", 3600.0},
+        {"viscous", 18.0}, {"stribeck_force", 12.0}, {"stribeck_speed", 0.05}};
+    for (const auto& [name, truth] : truths) dampline::test::expect_size(found, name, truth, 3.0);
   }
 }
 
