@@ -81,6 +81,7 @@ TEST(BlackboxFileReader, TakesNothingFromTheFileBefore) {
   for (std::uint64_t cut = 1; cut <= kRecordHead + kRecordTail; ++cut) {
     std::filesystem::resize_file(folder.file(1), size - cut);
     ASSERT_EQ(reader.open(folder.file(1).c_str()), Opened::kOpen);
+    ASSERT_EQ(reader.offset(), kRecordsAt) << cut;
     ASSERT_EQ(count_of(reader), 19U) << cut;
     ASSERT_TRUE(reader.torn()) << cut;
     ASSERT_EQ(reader.damaged_stretches(), 0U) << cut;
