@@ -451,7 +451,8 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
   best = move(best.model, best.joint, start, scale, drives);
   if (!best.shot.ok) best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;
-  best = surest_of_fading(best, scale, drives_of(records, kShortly), drives);
+  if (follows(best.shot, noise_m, kNearlyWhite))
+    best = surest_of_fading(best, scale, drives_of(records, kShortly), drives);
   judge(best, drives, scale, noise_m);
   if (best.model.free_run.by_motion) {
     const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);
