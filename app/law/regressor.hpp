@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace dampline::app::law {
@@ -55,9 +57,10 @@ using Kind = Regressor::Kind;
 [[nodiscard]] constexpr bool has_rate(Kind kind) noexcept {
   return kind == Kind::kBoucWen || kind == Kind::kMaxwell;
 }
-/// Friction that falls with speed, in any of its forms.
+/// The forms of friction that falls with speed.
+inline constexpr std::array kFadingForms{Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly};
 [[nodiscard]] constexpr bool is_fading(Kind kind) noexcept {
-  return kind == Kind::kFading || kind == Kind::kFadingSquare || kind == Kind::kFadingSlowly;
+  return std::find(kFadingForms.begin(), kFadingForms.end(), kind) != kFadingForms.end();
 }
 /// Whether a stop operator is in it.
 [[nodiscard]] constexpr bool has_stop(Kind kind) noexcept { return kind >= Kind::kStop; }

@@ -146,8 +146,6 @@ struct Form {
   bool plainer{false};  ///< than what the equations have
 };
 
-constexpr std::array kFadingShapes{Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly};
-
 /// The model in other forms that the equations hardly tell apart where the motion is noisy:
 /// friction without a width of its own, the other ways in which friction falls with speed, a memory
 /// that yields smoothly. The plainer ones first.
@@ -163,7 +161,7 @@ std::vector<Form> other_forms(const Model& model, const Scale& scale) {
   for (const Form& start : starts)
     for (std::size_t i = 0; i < model.columns.size(); ++i) {
       const Regressor& c = start.model.columns[i];
-      for (const Kind shape : kFadingShapes) {
+      for (const Kind shape : law::kFadingForms) {
         if (!law::is_fading(c.kind) || c.kind == shape) continue;
         out.push_back(start);
         out.back().model.columns[i].kind = shape;
@@ -296,7 +294,7 @@ Moved surest_of_fading(const Moved& best, const Scale& scale, const std::vector<
   if (!shortly.shot.ok) return best;
   std::vector<Moved> all{best};
   double segment_s = best.shot.segment_s;
-  for (const Kind shape : kFadingShapes) {
+  for (const Kind shape : law::kFadingForms) {
     if (shape == fading->kind) continue;
     auto other = in_other_form(best, shortly, column, shape, scale, part, drives);
     if (!other) continue;

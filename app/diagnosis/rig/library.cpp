@@ -67,7 +67,7 @@ void add_friction(Library& out, const Scale& scale) {
       {"progressive_friction", 0.0, {out.add({Kind::kProgressiveAbsolute, a, 0.0})}, 0});
   for (const double share : ratios(0.05, 2.0, 1.6)) {
     const double speed = share * scale.velocity_mps;
-    for (const Kind shape : {Kind::kFading, Kind::kFadingSquare, Kind::kFadingSlowly})
+    for (const Kind shape : law::kFadingForms)
       out.candidates.push_back({"stribeck", speed, {out.add({shape, a, speed})}, 1});
   }
 }
