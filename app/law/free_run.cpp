@@ -17,16 +17,16 @@ constexpr int kMostEvents = 40;     // between two samples
 constexpr int kSecants = 30;
 constexpr double kWithin = 1e-13;  // of the greatest speed or force about an event
 
-/// Without its sign.
-double level_of(const Regressor& c, double x, double v) noexcept {
-  const double speed = std::abs(v);
-  switch (c.kind) {
+/// Without its sign; `per_speed`: 1 / b.
+double level_of(Kind kind, double per_speed, double x, double v) noexcept {
+  const double speeds = std::abs(v) * per_speed;
+  switch (kind) {
     case Kind::kFading:
-      return std::exp(-speed / c.b);
+      return std::exp(-speeds);
     case Kind::kFadingSquare:
-      return std::exp(-speed * speed / (c.b * c.b));
+      return std::exp(-speeds * speeds);
     case Kind::kFadingSlowly:
-      return 1.0 / (1.0 + speed * speed / (c.b * c.b));
+      return 1.0 / (1.0 + speeds * speeds);
     case Kind::kProgressive:
       return x;
     case Kind::kProgressiveAbsolute:
@@ -104,24 +104,26 @@ double windowed_sinc(double x) {
 /// Times Input::kFine as many samples, band-limited; beyond the ends the force goes on oddly.
 Eigen::VectorXd interpolated(const Eigen::VectorXd& f) {
   const Eigen::Index last = f.size() - 1;
+  Eigen::VectorXd longer{f.size() + 2 * kTaps};
+  for (Eigen::Index i = -kTaps; i <= last + kTaps; ++i) {
+    double& there = longer[i + kTaps];
+    if (i < 0)
+      there = 2.0 * f[0] - f[std::min(-i, last)];
+    else
+      there = i <= last ? f[i] : 2.0 * f[last] - f[std::max<Eigen::Index>(2 * last - i, 0)];
+  }
   Eigen::VectorXd out{Input::kFine * last + 1};
-  const auto at = [&](Eigen::Index i) {
-    if (i < 0) return 2.0 * f[0] - f[std::min(-i, last)];
-    if (i > last) return 2.0 * f[last] - f[std::max<Eigen::Index>(2 * last - i, 0)];
-    return f[i];
-  };
   for (Eigen::Index part = 0; part < Input::kFine; ++part) {
     Eigen::VectorXd weights{2 * kTaps};
     for (Eigen::Index k = 0; k < 2 * kTaps; ++k)
       weights[k] = windowed_sinc(static_cast<double>(part) / Input::kFine -
                                  static_cast<double>(k - kTaps + 1));
     weights /= weights.sum();
-    for (Eigen::Index i = 0; i < last || (part == 0 && i == last); ++i) {
-      double sum = 0.0;
-      for (Eigen::Index k = 0; k < 2 * kTaps; ++k) sum += weights[k] * at(i + k - kTaps + 1);
-      out[Input::kFine * i + part] = part == 0 ? f[i] : sum;
-    }
+    for (Eigen::Index i = 0; i < last; ++i)
+      out[Input::kFine * i + part] =
+          part == 0 ? f[i] : weights.dot(longer.segment(i + 1, 2 * kTaps));
   }
+  out[Input::kFine * last] = f[last];
   return out;
 }
 
@@ -173,6 +175,7 @@ bool FreeRun::is_seen(const Law& law, double interval_s) noexcept {
 FreeRun::FreeRun(const Law& law, const Input& input, int refinement)
     : law_{law},
       input_{input},
+      per_mass_{1.0 / law.mass_kg},
       memories_{memories_of(law)},
       steps_{refinement * steps_for(law, input.interval_s())} {
   for (std::size_t i = 0; i < law.terms.size(); ++i) {
@@ -181,7 +184,7 @@ FreeRun::FreeRun(const Law& law, const Input& input, int refinement)
     if (t.sharp && t.column.kind == Kind::kSign)
       held_n_ += t.coefficient;
     else if (t.sharp)
-      sharp_.push_back(i);
+      sharp_.push_back({t.column.kind, t.coefficient, 1.0 / t.column.b});
     else if (t.column.kind == Kind::kOne)
       constant_n_ += t.coefficient;
     else if (t.column.kind == Kind::kDeflection)
@@ -197,8 +200,8 @@ FreeRun::FreeRun(const Law& law, const Input& input, int refinement)
 
 double FreeRun::level(double x, double v) const noexcept {
   double out = held_n_;
-  for (const std::size_t i : sharp_)
-    out += law_.terms[i].coefficient * level_of(law_.terms[i].column, x, v);
+  for (const Level& term : sharp_)
+    out += term.coefficient * level_of(term.kind, term.per_speed, x, v);
   return out;
 }
 
@@ -220,7 +223,7 @@ double FreeRun::smooth_force(double x, double v, const State& state) const noexc
 
 double FreeRun::accel(const State& s, double force_n, Mode mode) const noexcept {
   const double friction = static_cast<double>(mode) * level(s.deflection_m, s.velocity_mps);
-  return (force_n - smooth_force(s.deflection_m, s.velocity_mps, s) - friction) / law_.mass_kg;
+  return (force_n - smooth_force(s.deflection_m, s.velocity_mps, s) - friction) * per_mass_;
 }
 
 FreeRun::Rate FreeRun::rate(const State& s, double force_n, Mode mode) const noexcept {
@@ -253,11 +256,36 @@ void FreeRun::place(const State& from, double dt_s, const Rate& r, State& out) c
   }
 }
 
+/// step() of what remembers nothing: two figures in place of all that a state could hold.
+State FreeRun::step_without_memory(const State& from, double force_n, double middle_n, double end_n,
+                                   double dt_s, Mode mode) const noexcept {
+  const auto accel_at = [&](double x, double v, double pull_n) {
+    const double friction = static_cast<double>(mode) * level(x, v);
+    return (pull_n - smooth_force(x, v, from) - friction) * per_mass_;
+  };
+  const double x = from.deflection_m;
+  const double v = from.velocity_mps;
+  const double half_s = 0.5 * dt_s;
+  const double a1 = accel_at(x, v, force_n);
+  const double v2 = v + half_s * a1;
+  const double a2 = accel_at(x + half_s * v, v2, middle_n);
+  const double v3 = v + half_s * a2;
+  const double a3 = accel_at(x + half_s * v2, v3, middle_n);
+  const double v4 = v + dt_s * a3;
+  const double a4 = accel_at(x + dt_s * v3, v4, end_n);
+  State out;
+  out.deflection_m = x + dt_s * ((v + 2.0 * (v2 + v3) + v4) / 6.0);
+  out.velocity_mps = v + dt_s * ((a1 + 2.0 * (a2 + a3) + a4) / 6.0);
+  return out;
+}
+
 /// `share` and `length` in samples; `force_n`: at `share`.
 State FreeRun::step(const State& from, double force_n, Eigen::Index i, double share, double length,
                     Mode mode) const noexcept {
   const double dt_s = length * input_.interval_s();
   const double middle_n = input_.at(i, share + 0.5 * length);
+  if (memories_.empty())
+    return step_without_memory(from, force_n, middle_n, input_.at(i, share + length), dt_s, mode);
   State there = from;
   const Rate a = rate(from, force_n, mode);
   place(from, 0.5 * dt_s, a, there);

@@ -77,6 +77,11 @@ class FreeRun {
     double v{0.0};
     std::array<double, kMostMemories> z{};
   };
+  struct Level {
+    Kind kind;
+    double coefficient;
+    double per_speed;  ///< 1 / b
+  };
   enum class Mode : std::int8_t { kBack = -1, kStuck = 0, kForth = 1 };
 
   [[nodiscard]] double level(double x, double v) const noexcept;
@@ -86,6 +91,8 @@ class FreeRun {
   void place(const State& from, double dt_s, const Rate& rate, State& out) const noexcept;
   [[nodiscard]] State step(const State& from, double force_n, Eigen::Index i, double share,
                            double length, Mode mode) const noexcept;
+  [[nodiscard]] State step_without_memory(const State& from, double force_n, double middle_n,
+                                          double end_n, double dt_s, Mode mode) const noexcept;
   [[nodiscard]] Mode mode_of(const State& state, double force_n) const noexcept;
   [[nodiscard]] double until_turned(const State& from, double force_n, Eigen::Index i, double share,
                                     double length, Mode mode, State& at) const noexcept;
@@ -94,12 +101,13 @@ class FreeRun {
 
   const Law& law_;
   const Input& input_;
+  double per_mass_;
   // Terms that ask for no function are summed; the others by their places.
   double held_n_{0.0};  ///< level of friction that depends on nothing
   double constant_n_{0.0};
   double spring_npm_{0.0};
   double damper_nspm_{0.0};
-  std::vector<std::size_t> sharp_;
+  std::vector<Level> sharp_;
   std::vector<std::size_t> smooth_;
   std::vector<Regressor> memories_;     ///< what the terms remember; like terms share one
   std::vector<std::size_t> memory_of_;  ///< of each term, where it has one

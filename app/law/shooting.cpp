@@ -98,7 +98,7 @@ class Shooting {
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
   [[nodiscard]] std::optional<double> density_ratio_of(const std::vector<Linear>& parts) const;
   [[nodiscard]] Shot shot_of(const VectorXd& unknowns, double squares) const;
-  Shot judge(const VectorXd& unknowns, double squares);
+  Shot judge(const VectorXd& unknowns, double squares, Reach reach);
 
   const LawOf& law_of_;
   VectorXd scale_;
@@ -413,10 +413,11 @@ Shot Shooting::shot_of(const VectorXd& unknowns, double squares) const {
   return out;
 }
 
-Shot Shooting::judge(const VectorXd& unknowns, double squares) {
+Shot Shooting::judge(const VectorXd& unknowns, double squares, Reach reach) {
   std::vector<Linear> parts;
-  // What the unknowns share cancels, and the error of one way would be left.
-  if (!std::isfinite(squares) || !linearise(unknowns, 1, Slopes::kBothWays, parts)) return {};
+  // What the unknowns share cancels, and the error of one way would be left in their deviations.
+  const Slopes slopes = reach == Reach::kWhole ? Slopes::kBothWays : Slopes::kAll;
+  if (!std::isfinite(squares) || !linearise(unknowns, 1, slopes, parts)) return {};
   const Index p = unknowns.size();
   std::vector<Linear> clean;
   clean.reserve(parts.size());
@@ -428,7 +429,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares) {
                                   2.0 * static_cast<double>(segments_.size()));
   // Steps twice as fine would go this much farther.
   std::vector<Linear> fine;
-  if (linearise(unknowns, 2, Slopes::kOfStates, fine)) {
+  if (reach == Reach::kWhole && linearise(unknowns, 2, Slopes::kOfStates, fine)) {
     VectorXd gradient = VectorXd::Zero(p);
     for (std::size_t i = 0; i < fine.size(); ++i)
       gradient += clean[i].by_unknowns.transpose() * (fine[i].left - parts[i].left);
@@ -472,7 +473,7 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
     length = length_ = shorter;
     longer = std::sqrt(longer);
   }
-  Shot out = judge(unknowns, squares);
+  Shot out = judge(unknowns, squares, reach);
   out.first_segment_s = static_cast<double>(first) * interval_s();
   return out;
 }
