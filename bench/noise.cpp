@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // How `explain` stands noise on the motion: a driven mass, 60 s, 60 tones of 0.3 to 12 Hz, white
-// noise on the displacement (per cent of its rms), the force clean; at the end noise on the force
-// instead. Integrated here, in fine steps with exact stick. The true base and the one true effect
-// are given. Of every coefficient the error; of all, how often truth lies within two deviations.
+// noise on the displacement (per cent of its rms), the force clean; at the end noise on both, and
+// on the force instead. Integrated here, in fine steps with exact stick. The true base and the one
+// true effect are given. Of every coefficient the error; of all, how often truth lies within two
+// deviations.
 //   noise [SEEDS [SYSTEM [NOISE]]]              the table as bench/RESULTS.md has it
 //   noise --free [SEEDS [SYSTEM [NOISE]]]       what explain names when nothing is given
 //   noise --records FOLDER [SEEDS [SYSTEM [NOISE]]]   the records, for bench/peers/noise.py
+// SYSTEM may be all; NOISE: of the displacement, or of both as 1/1.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -350,7 +352,7 @@ void look_freely(const System& system, unsigned seeds, const Noise& noise) {
     for (const app::Step& step : found.steps) answer += " + " + step.effect;
     ++answers[answer];
   }
-  fmt::print("| {} | {:g} |", system.name, 100.0 * noise.of_x);
+  fmt::print("| {} | {:g} | {:g} |", system.name, 100.0 * noise.of_x, 100.0 * noise.of_force);
   for (const auto& [answer, count] : answers) fmt::print(" {} x {};", count, answer);
   fmt::print(" |\n");
   std::fflush(stdout);
@@ -369,8 +371,8 @@ void write_records(const System& system, unsigned seeds, const Noise& noise,
   }
 }
 
-constexpr std::array kNoises{Noise{0.0, 0.0}, Noise{0.001, 0.0}, Noise{0.01, 0.0}, Noise{0.05, 0.0},
-                             Noise{0.0, 0.05}};
+constexpr std::array kNoises{Noise{0.0, 0.0},  Noise{0.001, 0.0}, Noise{0.01, 0.0},
+                             Noise{0.05, 0.0}, Noise{0.01, 0.01}, Noise{0.0, 0.05}};
 
 }  // namespace
 
@@ -383,24 +385,28 @@ int main(int argc, char** argv) {
     return words.size() > first + i ? words[first + i] : std::string{otherwise};
   };
   const auto seeds = static_cast<unsigned>(std::stoul(word(0, "5")));
-  const std::string only = word(1, "");
+  const std::string only = word(1, "all");
   const std::string level = word(2, "");
   if (writes) std::filesystem::create_directories(words.at(1));
   if (freely)
-    fmt::print("| system | noise of x, % | what a free explain says |\n|---|---|---|\n");
+    fmt::print(
+        "| system | noise of x, % | of the force, % | what a free explain says |\n"
+        "|---|---|---|---|\n");
   else if (!writes)
     fmt::print(
         "| system | noise of x, % | of the force, % | worst error, % | each, median % | within two "
         "deviations | by its motion | processor s a record |\n|---|---|---|---|---|---|---|---|\n");
   for (const System& system : systems())
     for (const Noise& noise : kNoises) {
-      if (!only.empty() && only != system.name) continue;
-      if (!level.empty() && std::abs(100.0 * noise.of_x - std::stod(level)) > 1e-9) continue;
+      if (only != "all" && only != system.name) continue;
+      const std::string of_x = fmt::format("{:g}", 100.0 * noise.of_x);
+      const std::string of_both = fmt::format("{}/{:g}", of_x, 100.0 * noise.of_force);
+      if (!level.empty() && level != of_x && level != of_both) continue;
       if (writes)
         write_records(system, seeds, noise, words.at(1));
       else if (!freely)
         look(system, seeds, noise);
-      else if (noise.of_force == 0.0)
+      else
         look_freely(system, seeds, noise);
     }
   return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/law/block_fit.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
 
@@ -13,6 +14,27 @@ constexpr std::size_t kFolds = 5;
 constexpr double kSingular = 1e-14;
 
 }  // namespace
+
+Linear beside_state(const Linear& part) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr{part.by_state};
+  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(part.by_state.rows(), qr.rank());
+  Linear out;
+  out.left = part.left - q * (q.transpose() * part.left);
+  out.by_unknowns = part.by_unknowns - q * (q.transpose() * part.by_unknowns);
+  return out;
+}
+
+Sums sum_of(const std::vector<Linear>& parts) {
+  const Eigen::Index p = parts.front().by_unknowns.cols();
+  Sums out{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
+  for (const Linear& each : parts) {
+    const Linear l = beside_state(each);
+    out.products += l.by_unknowns.transpose() * l.by_unknowns;
+    out.gradient += l.by_unknowns.transpose() * l.left;
+    out.squares += l.left.squaredNorm();
+  }
+  return out;
+}
 
 void append_blocks(const MatrixXd& slopes, const VectorXd& left, Eigen::Index length,
                    std::vector<Sums>& out) {

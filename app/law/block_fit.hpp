@@ -6,6 +6,16 @@
 
 namespace dampline::app::law {
 
+/// The residual of a part of the samples and its slopes, 0 where a sample does not count. What the
+/// state at its start takes is its own.
+struct Linear {
+  Eigen::VectorXd left;
+  Eigen::MatrixXd by_unknowns;
+  Eigen::MatrixXd by_state;
+};
+/// What is left, and the slopes by the unknowns, when the state has taken its part.
+[[nodiscard]] Linear beside_state(const Linear& part);
+
 /// Products of the residual and of its slopes by p unknowns over some samples: [p, p], [p].
 struct Sums {
   Eigen::MatrixXd products;
@@ -13,6 +23,8 @@ struct Sums {
   double squares{0.0};
 };
 
+/// Those of all parts, beside their states; at least one.
+[[nodiscard]] Sums sum_of(const std::vector<Linear>& parts);
 /// Those of blocks of `length` samples, the last one shorter, behind those of `out`. `slopes`:
 /// [n, p], `left`: [n].
 void append_blocks(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& left, Eigen::Index length,

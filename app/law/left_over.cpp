@@ -44,7 +44,7 @@ void LeftOver::transform() {
   ++segments_;
 }
 
-std::optional<double> LeftOver::density_ratio() const {
+std::optional<LeftDensity> LeftOver::density() const {
   if (segments_ < kFewestSegments) return {};
   const auto speed = [&](std::size_t k) { return static_cast<double>(k * k) * motion_[k]; };
   double peak = 0.0;
@@ -58,9 +58,10 @@ std::optional<double> LeftOver::density_ratio() const {
                            left_.begin() + static_cast<std::ptrdiff_t>(end), 0.0) /
            static_cast<double>(end - first);
   };
-  const double noise = density((beside + kHighestBin + 1) / 2, kHighestBin + 1);
-  if (!(noise > 0.0)) return {};
-  return density(1, edge + 1) / noise;
+  const LeftDensity out{density(1, edge + 1),
+                        density((beside + kHighestBin + 1) / 2, kHighestBin + 1)};
+  if (!(out.beside > 0.0)) return {};
+  return out;
 }
 
 }  // namespace dampline::app::law

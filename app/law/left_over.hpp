@@ -8,6 +8,12 @@
 
 namespace dampline::app::law {
 
+/// Mean density of what is left, by its place; in one unit.
+struct LeftDensity {
+  double within;  ///< where the motion is
+  double beside;
+};
+
 /// Whether what a law leaves of a motion is more than noise: spectra of both, segments of 512
 /// samples with a Hann window, half overlapping (Welch 1967). Noise is as dense beside the motion
 /// as where the motion is; what a law misses lies where the motion is.
@@ -17,9 +23,8 @@ class LeftOver {
   void add(double motion_m, double left_m);
   /// The next sample does not follow the last one.
   void gap() noexcept { fill_ = 0; }
-  /// Mean density of what is left where the motion is, over that beside it; absent where too little
-  /// lies beside it, or the record is too short.
-  [[nodiscard]] std::optional<double> density_ratio() const;
+  /// Absent where too little lies beside the motion, or the record is too short.
+  [[nodiscard]] std::optional<LeftDensity> density() const;
 
  private:
   static constexpr std::size_t kSize = Fourier512::kSize;

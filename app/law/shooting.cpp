@@ -14,6 +14,7 @@
 #include "app/beside.hpp"
 #include "app/law/block_fit.hpp"
 #include "app/law/left_over.hpp"
+#include "app/law/start.hpp"
 
 namespace dampline::app::law {
 namespace {
@@ -47,30 +48,21 @@ struct Segment {
   bool is_first;  ///< of its record: what it remembers is unknown too
 };
 
-/// The residual of a segment and its slopes, the samples that do not count at 0.
-struct Linear {
-  VectorXd left;
-  MatrixXd by_unknowns;
-  MatrixXd by_state;
-};
-
 class Shooting {
  public:
   Shooting(const LawOf& law_of, VectorXd scale, std::vector<bool> positive,
            const std::vector<Drive>& drives)
       : law_of_{law_of}, scale_{std::move(scale)}, positive_{std::move(positive)}, drives_{drives} {
-    double squares = 0.0;
-    double speeds = 0.0;
     for (const Drive& d : drives) {
       const double mean = d.deflection_m.mean();
-      squares += (d.deflection_m.array() - mean).square().sum();
-      speeds += d.velocity_mps.squaredNorm();
+      const double period_s = period_of(d.deflection_m, d.velocity_mps);
+      if (std::isfinite(period_s)) period_s_ = std::max(period_s_, period_s);
       range_m_ = std::max(range_m_, d.deflection_m.maxCoeff() - d.deflection_m.minCoeff());
       samples_ += d.deflection_m.size();
       for (Index i = 0; i < d.deflection_m.size(); ++i)
         if (counts(d, i)) variance_m2_ += std::pow(d.deflection_m[i] - mean, 2);
     }
-    period_s_ = speeds > 0.0 ? 2.0 * std::numbers::pi * std::sqrt(squares / speeds) : 1.0;
+    if (!(period_s_ > 0.0)) period_s_ = 1.0;
   }
 
   Shot fit(VectorXd unknowns, Reach reach);
@@ -90,13 +82,12 @@ class Shooting {
                                      Index unknowns, std::vector<Linear>& out);
   [[nodiscard]] bool linearise(const VectorXd& unknowns, int refinement, Slopes kind,
                                std::vector<Linear>& out);
-  [[nodiscard]] Sums sum(const std::vector<Linear>& parts) const;
   [[nodiscard]] std::vector<Segment> moved(const std::vector<Linear>& parts,
                                            const VectorXd& by) const;
   bool settle(const VectorXd& unknowns);
   bool descend(VectorXd& unknowns, double enough, double& squares);
-  [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts) const;
-  [[nodiscard]] std::optional<double> density_ratio_of(const std::vector<Linear>& parts) const;
+  [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts, Reach reach) const;
+  void look_for_places(const std::vector<Linear>& parts, Shot& out) const;
   [[nodiscard]] Shot shot_of(const VectorXd& unknowns, double squares) const;
   Shot judge(const VectorXd& unknowns, double squares, Reach reach);
 
@@ -110,7 +101,7 @@ class Shooting {
   double difference_{kDifferences[0]};
   double variance_m2_{0.0};  ///< summed
   double range_m_{0.0};
-  double period_s_{1.0};
+  double period_s_{0.0};
 };
 
 /// Segments of so many samples; where there were some, their states stay.
@@ -279,28 +270,6 @@ bool Shooting::linearise(const VectorXd& unknowns, int refinement, Slopes kind,
   return stayed;
 }
 
-/// What is left when each segment's state has taken its part.
-Linear beside_state(const Linear& l) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr{l.by_state};
-  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(l.by_state.rows(), qr.rank());
-  Linear out;
-  out.left = l.left - q * (q.transpose() * l.left);
-  out.by_unknowns = l.by_unknowns - q * (q.transpose() * l.by_unknowns);
-  return out;
-}
-
-Sums Shooting::sum(const std::vector<Linear>& parts) const {
-  const Index p = parts.front().by_unknowns.cols();
-  Sums out{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0.0};
-  for (const Linear& each : parts) {
-    const Linear l = beside_state(each);
-    out.products += l.by_unknowns.transpose() * l.by_unknowns;
-    out.gradient += l.by_unknowns.transpose() * l.left;
-    out.squares += l.left.squaredNorm();
-  }
-  return out;
-}
-
 /// The segments with the states that a step of the unknowns asks for.
 std::vector<Segment> Shooting::moved(const std::vector<Linear>& parts, const VectorXd& by) const {
   std::vector<Segment> out = segments_;
@@ -338,7 +307,7 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
   std::vector<Linear> parts;
   for (int round = 0; round < kRounds; ++round) {
     if (!linearise(unknowns, 1, Slopes::kAll, parts)) return false;
-    const Sums sums = sum(parts);
+    const Sums sums = sum_of(parts);
     const VectorXd diagonal = sums.products.diagonal();
     bool better = false;
     bool arrived = false;
@@ -375,16 +344,19 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
   return true;
 }
 
-/// Blocks in time, two periods of the motion long where there are enough of them.
-std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts) const {
-  const Index block = std::max<Index>(
-      1, std::min(static_cast<Index>(2.0 * period_s_ / interval_s()), samples_ / kFewestBlocks));
+/// Blocks in time, two periods of the motion long where there are enough of them, or as long as the
+/// segments, over which a noisy force's motion stays alike.
+std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts, Reach reach) const {
+  const Index wanted =
+      reach == Reach::kFirstSegments ? length_ : static_cast<Index>(2.0 * period_s_ / interval_s());
+  const Index block = std::max<Index>(1, std::min(wanted, samples_ / kFewestBlocks));
   std::vector<Sums> out;
   for (const Linear& l : parts) append_blocks(l.by_unknowns, l.left, block, out);
   return out;
 }
 
-std::optional<double> Shooting::density_ratio_of(const std::vector<Linear>& parts) const {
+/// Where what is left lies.
+void Shooting::look_for_places(const std::vector<Linear>& parts, Shot& out) const {
   LeftOver spectra;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const Drive& d = drives_[segments_[k].drive];
@@ -397,7 +369,10 @@ std::optional<double> Shooting::density_ratio_of(const std::vector<Linear>& part
         spectra.gap();
     }
   }
-  return spectra.density_ratio();
+  const std::optional<LeftDensity> density = spectra.density();
+  if (!density) return;
+  out.density_ratio = density->within / density->beside;
+  out.excess_density = density->within - density->beside;
 }
 
 /// Before anything is known of its deviations.
@@ -416,20 +391,21 @@ Shot Shooting::shot_of(const VectorXd& unknowns, double squares) const {
 Shot Shooting::judge(const VectorXd& unknowns, double squares, Reach reach) {
   std::vector<Linear> parts;
   // What the unknowns share cancels, and the error of one way would be left in their deviations.
-  const Slopes slopes = reach == Reach::kWhole ? Slopes::kBothWays : Slopes::kAll;
+  const bool trial = reach == Reach::kTrial;
+  const Slopes slopes = trial ? Slopes::kAll : Slopes::kBothWays;
   if (!std::isfinite(squares) || !linearise(unknowns, 1, slopes, parts)) return {};
   const Index p = unknowns.size();
   std::vector<Linear> clean;
   clean.reserve(parts.size());
   for (const Linear& each : parts) clean.push_back(beside_state(each));
-  const BlockFit fit{blocks_of(clean)};
+  const BlockFit fit{blocks_of(clean, reach)};
   if (!fit.ok()) return {};
   Shot out = shot_of(unknowns, squares);
   out.covariance = fit.covariance(static_cast<double>(samples_ - p) -
                                   2.0 * static_cast<double>(segments_.size()));
   // Steps twice as fine would go this much farther.
   std::vector<Linear> fine;
-  if (reach == Reach::kWhole && linearise(unknowns, 2, Slopes::kOfStates, fine)) {
+  if (!trial && linearise(unknowns, 2, Slopes::kOfStates, fine)) {
     VectorXd gradient = VectorXd::Zero(p);
     for (std::size_t i = 0; i < fine.size(); ++i)
       gradient += clean[i].by_unknowns.transpose() * (fine[i].left - parts[i].left);
@@ -437,7 +413,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares, Reach reach) {
     out.covariance += by * by.transpose();
   }
   out.held_out_nmse = fit.held_out_squares() / variance_m2_;
-  out.density_ratio = density_ratio_of(parts);
+  look_for_places(parts, out);
   return out;
 }
 
@@ -447,12 +423,12 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
   auto length =
       std::max(kFewestSamples, static_cast<Index>(kFirstPeriods * period_s_ / interval_s()));
   length = std::min(length, longest);
-  if (reach == Reach::kFirstSegments) longest = length;
+  if (reach != Reach::kWhole) longest = length;
   cut(length);
   if (!settle(unknowns)) return {};
   const Index first = length;
   double squares = 0.0;
-  const bool is_last = length >= longest && reach == Reach::kWhole;
+  const bool is_last = length >= longest && reach != Reach::kTrial;
   if (!descend(unknowns, is_last ? kArrived : kNearly, squares)) return {};
   double longer = kLonger;
   while (length < longest && longer > kLeastLonger) {
@@ -480,8 +456,14 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
 
 Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
   cut(static_cast<Index>(std::lround(segment_s / interval_s())));
-  if (!settle(unknowns)) return {};
-  return shot_of(unknowns, squares_of(unknowns, segments_));
+  const Law law = law_of_(unknowns);
+  std::vector<Linear> parts;
+  if (!settle(unknowns) || !follow_segments(law, 1, memories_of(law).size(), 0, parts)) return {};
+  double squares = 0.0;
+  for (const Linear& l : parts) squares += l.left.squaredNorm();
+  Shot out = shot_of(unknowns, squares);
+  look_for_places(parts, out);
+  return out;
 }
 
 }  // namespace

@@ -33,14 +33,16 @@ struct Shot {
   /// Density of what is left where the motion is, over that beside it; 1: noise (LeftOver). Absent:
   /// unknown.
   std::optional<double> density_ratio{};
+  double excess_density{0.0};  ///< of what is left, where the motion is less beside it; 0: unknown
   double segment_s{0.0};
   double first_segment_s{0.0};  ///< the shortest that were followed
   std::size_t segments{0};
   State start;  ///< of the first segment
 };
 
-/// How far segments grow: to the whole record, or not at all, which is quick and less certain.
-enum class Reach : std::uint8_t { kWhole, kFirstSegments };
+/// How far segments grow: to the whole record, or not at all, which is quick and less certain, but
+/// forgets what noise of the force has moved; a trial is to be compared, its deviations are rough.
+enum class Reach : std::uint8_t { kWhole, kFirstSegments, kTrial };
 
 /// Multiple shooting: the unknowns, and the state at the start of each segment, that leave least of
 /// the measured deflection (output error; Bock, "Recent advances in parameter identification

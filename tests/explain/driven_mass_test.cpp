@@ -320,6 +320,32 @@ TEST(ADrivenMassNightly, IsCompleteWhereItSticksAndItsForceIsNoisy) {
   }
 }
 
+/// Noise of force and deflection, 1 % each, hide one another: more than the deflection's is left of
+/// the motion, and less than half of what the equations leave is the force's.
+TEST(ADrivenMass, IsCompleteWhereForceAndMotionAreNoisy) {
+  Config config;
+  config.model.base = {"coulomb", "viscous"};
+  config.model.candidates = {"bump_stop"};
+  config.model.inertia = config.model.stiffness = "identify";
+  Sticking mass{.seed = 3, .force_noise_n = 0.55, .deflection_noise_m = 1e-4};
+  const rig::Explanation found = dampline::test::explained(record_of(mass), config);
+  EXPECT_EQ(found.verdict(), "complete") << summarize(found);
+  const FreeRunError& run = found.final.free_run;
+  EXPECT_TRUE(run.by_motion && run.followed);
+  EXPECT_GT(run.density_ratio.value(), 1.5);
+  EXPECT_GT(run.density_ratio_of_noise.value(), 1.5);
+  const std::vector<std::pair<const char*, double>> truths{
+      {"coulomb", 25.0}, {"moving_mass", 10.0}, {"stiffness", 3600.0}, {"viscous", 18.0}};
+  for (const auto& [name, truth] : truths) {
+    dampline::test::expect_size(found, name, truth, 3.0);
+    EXPECT_NEAR(value_of(found, name), truth, 0.005 * truth) << name;
+  }
+  mass.coulomb_n = 15.0;
+  mass.falls_by_n = 12.0;
+  const rig::Explanation lacking = dampline::test::explained(record_of(mass), config);
+  EXPECT_FALSE(lacking.is_complete()) << summarize(lacking);
+}
+
 /// A part of these two records speaks for another of the three ways in which friction falls with
 /// speed; of seeds 5 to 16 they are the two by which figures were 8 to 20 deviations off.
 TEST(ADrivenMassNightly, HasTheFrictionThatFallsAsItDoesBehindMuchNoise) {

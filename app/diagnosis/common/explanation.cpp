@@ -122,7 +122,8 @@ Json free_run_json(const FreeRunError& f) {
           {"held_out_nmse", f.nmse_of_motion},
           {"residual_m", f.residual_m},
           {"noise_m", f.noise_m},
-          {"density_ratio", f.density_ratio ? Json(*f.density_ratio) : Json(nullptr)},
+          {"density_ratio", known(f.density_ratio.value_or(0.0))},
+          {"density_ratio_of_noise", known(f.density_ratio_of_noise.value_or(0.0))},
           {"followed", f.followed},
           {"agrees_with_equations", f.agree},
           {"refined", f.by_motion},
@@ -236,8 +237,11 @@ std::string free_run_text(const FreeRunError& f) {
       f.noise_m);
   if (f.density_ratio)
     text +=
-        fmt::format("; where the motion is, {:.3g} times as much is left as beside it (noise: 1)",
-                    *f.density_ratio);
+        fmt::format("; where the motion is, {:.3g} times as much is left as beside it (noise: {})",
+                    *f.density_ratio,
+                    f.density_ratio_of_noise
+                        ? fmt::format("1, with the force's {:.3g}", *f.density_ratio_of_noise)
+                        : "1");
   return fmt::format("{}: {}\n", text, kept);
 }
 

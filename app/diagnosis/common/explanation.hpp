@@ -64,6 +64,9 @@ struct FreeRunError {
   double noise_m{0.0};            ///< of the deflection, rms
   /// Density of what is left where the motion is, over that beside it; 1: noise. Absent: unknown.
   std::optional<double> density_ratio{};
+  /// The same where the law itself moves under a force as noisy as the measured one. Absent:
+  /// unknown, or not asked.
+  std::optional<double> density_ratio_of_noise{};
   bool followed{false};     ///< no more than noise is left
   bool agree{false};        ///< both within their deviations
   bool by_motion{false};    ///< the law has the motion's

@@ -8,14 +8,18 @@
 #include <utility>
 
 #include "app/diagnosis/rig/law.hpp"
+#include "app/diagnosis/rig/own_motion.hpp"
 #include "app/diagnosis/rig/surrogate.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
 #include "app/diagnosis/rig/trials.hpp"
+#include "app/law/noise.hpp"
 #include "app/law/shooting.hpp"
 #include "app/law/start.hpp"
 
 namespace dampline::app::rig {
 namespace {
+
+constexpr std::uint64_t kNoiseSeed = 1931;  // of noise that is made
 
 /// The records, or of each what holds so many periods of the motion.
 std::vector<law::Drive> drives_of(const std::vector<Series>& records, double periods = 0.0) {
@@ -36,28 +40,6 @@ std::vector<law::Drive> drives_of(const std::vector<Series>& records, double per
   return out;
 }
 
-/// The model with other coefficients and places.
-Model with(Model model, const Joint& joint, const Eigen::VectorXd& unknowns) {
-  const auto n = static_cast<Eigen::Index>(joint.coefficients);
-  model.fit.theta = unknowns.head(n);
-  for (std::size_t k = 0; k < joint.places.size(); ++k)
-    for (const std::size_t c : joint.places[k].columns)
-      (joint.places[k].of == Place::Of::kA ? model.columns[c].a : model.columns[c].b) =
-          unknowns[n + static_cast<Eigen::Index>(k)];
-  return model;
-}
-
-Eigen::VectorXd unknowns_of(const Model& model, const Joint& joint) {
-  const auto n = static_cast<Eigen::Index>(joint.coefficients);
-  Eigen::VectorXd out{n + static_cast<Eigen::Index>(joint.places.size())};
-  out.head(n) = model.fit.theta;
-  for (std::size_t k = 0; k < joint.places.size(); ++k) {
-    const Regressor& c = model.columns[joint.places[k].columns[0]];
-    out[n + static_cast<Eigen::Index>(k)] = joint.places[k].of == Place::Of::kA ? c.a : c.b;
-  }
-  return out;
-}
-
 /// Whether all figures of both lie within kAgree deviations of the difference.
 bool agree(const Eigen::VectorXd& rows, const Eigen::MatrixXd& of_rows, const law::Shot& motion) {
   const Eigen::ArrayXd variance = of_rows.diagonal().array() + motion.covariance.diagonal().array();
@@ -72,7 +54,7 @@ law::LawOf law_at(const Model& model, const Joint& joint, const Scale& scale) {
   std::vector<bool> sharp;
   for (const Regressor& c : model.columns) sharp.push_back(is_sharp(c, scale));
   return [&model, &joint, sharp](const Eigen::VectorXd& unknowns) {
-    const Model there = with(model, joint, unknowns);
+    const Model there = with_unknowns(model, joint, unknowns);
     law::Law out;
     for (std::size_t i = 0; i < there.columns.size(); ++i) {
       const double value = unknowns[static_cast<Eigen::Index>(i)];
@@ -185,24 +167,33 @@ double as_likely(const law::Shot& shot, const law::Shot& other,
   return std::pow(other.nmse / shot.nmse, 0.5 * samples_of(drives));
 }
 
+/// What figures leave of the motion over segments so long; infinite where they run away.
+double left_by(const Moved& moved, const Eigen::VectorXd& unknowns, double segment_s,
+               const std::vector<law::Drive>& drives, const Scale& scale) {
+  const law::Shot shot =
+      law::follow(law_at(moved.model, moved.joint, scale), unknowns, drives, segment_s);
+  return shot.ok ? shot.nmse : std::numeric_limits<double>::infinity();
+}
+
+void describe(const Moved& moved, const law::Shot& motion, const std::vector<law::Drive>& drives,
+              const Scale& scale, FreeRunError& out) {
+  out.segments = motion.segments;
+  out.segment_s = motion.segment_s;
+  out.nmse_of_motion = motion.held_out_nmse;
+  out.residual_m = motion.residual_m;
+  out.density_ratio = motion.density_ratio;
+  out.nmse_of_equations =
+      left_by(moved, unknowns_of(moved.model, moved.joint), motion.segment_s, drives, scale);
+}
+
 /// Which of both is kept.
 void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& scale,
            double noise_m) {
   const Eigen::VectorXd rows = unknowns_of(moved.model, moved.joint);
   const law::Shot& motion = moved.shot;
-  const auto left_by = [&](const Eigen::VectorXd& unknowns, double segment_s) {
-    const law::Shot shot =
-        law::follow(law_at(moved.model, moved.joint, scale), unknowns, drives, segment_s);
-    return shot.ok ? shot.nmse : std::numeric_limits<double>::infinity();
-  };
   FreeRunError& out = moved.model.free_run;
-  out.segments = motion.segments;
-  out.segment_s = motion.segment_s;
-  out.nmse_of_equations = left_by(rows, motion.segment_s);
-  out.nmse_of_motion = motion.held_out_nmse;
-  out.residual_m = motion.residual_m;
+  describe(moved, motion, drives, scale, out);
   out.noise_m = noise_m;
-  out.density_ratio = motion.density_ratio;
   out.followed = follows(motion, noise_m);
   out.agree = agree(rows, moved.joint.covariance, motion);
   const double share = out.nmse_of_motion / out.nmse_of_equations;
@@ -215,14 +206,57 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
   }
   // A law that misses more than noise is held to its force, unless its motion is another one; over
   // short segments, since in long ones chaos parts the like too.
-  out.by_motion = left_by(motion.unknowns, motion.first_segment_s) <
-                  kMovesFarBetter * left_by(rows, motion.first_segment_s);
+  const double short_s = motion.first_segment_s;
+  out.by_motion = left_by(moved, motion.unknowns, short_s, drives, scale) <
+                  kMovesFarBetter * left_by(moved, rows, short_s, drives, scale);
+}
+
+/// White noise of the records; empty where that of the force moves nothing visibly.
+std::vector<law::Noise> noise_with_force(const std::vector<Series>& records) {
+  std::vector<law::Noise> out;
+  bool loud = false;
+  for (const Series& s : records) {
+    out.push_back({white_noise(s.force_n), s.noise_m});
+    const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
+    loud = loud || out.back().force_n > kSilentForce * rms_n;
+  }
+  if (!loud) out.clear();
+  return out;
+}
+
+/// Where a law misses more than the deflection's noise, over short segments: what noise of the
+/// force makes of its own motion, if that is of the same size.
+std::optional<double> of_noise_alone(const Moved& briefly, const std::vector<law::Noise>& noise,
+                                     const std::vector<law::Drive>& drives, const Scale& scale) {
+  if (!briefly.shot.ok || !briefly.shot.density_ratio || noise.empty()) return std::nullopt;
+  const law::Shot made = law::follow_own_noise(law_at(briefly.model, briefly.joint, scale),
+                                               briefly.shot, drives, noise, kNoiseSeed);
+  const double times = briefly.shot.excess_density / made.excess_density;
+  return times > kAsMuch && times < 1.0 / kAsMuch ? made.density_ratio : std::nullopt;
+}
+
+/// Where noise of the force is all that a law misses: its figures over short segments, which forget
+/// what that has moved and in which chaos has not begun.
+std::optional<law::Shot> shot_beside_noise(Moved& moved, const std::vector<Series>& records,
+                                           const std::vector<law::Drive>& drives,
+                                           const Scale& scale) {
+  FreeRunError& out = moved.model.free_run;
+  const std::vector<law::Noise> noise = noise_with_force(records);
+  if (out.followed || noise.empty()) return std::nullopt;
+  Moved briefly = move(moved.model, moved.joint, moved.shot.unknowns, scale, drives,
+                       law::Reach::kFirstSegments);
+  const std::optional<double> ratio = of_noise_alone(briefly, noise, drives, scale);
+  if (!ratio) return std::nullopt;
+  describe(moved, briefly.shot, drives, scale, out);
+  out.density_ratio_of_noise = ratio;
+  out.followed = true;
+  return std::move(briefly.shot);
 }
 
 /// Over short segments of a part of the records, by which forms are compared.
 Moved move_quickly(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
                    const Scale& scale, const std::vector<law::Drive>& part) {
-  return move(model, joint, start, scale, part, law::Reach::kFirstSegments);
+  return move(model, joint, start, scale, part, law::Reach::kTrial);
 }
 
 /// The form, and the figures, with which the best of all forms goes over a part of the records;
@@ -331,69 +365,12 @@ double noise_of(const std::vector<Series>& records) {
   return out;
 }
 
-double nmse_of(const Model& model, const std::vector<Series>& records) {
-  TrialBase base;
-  base.columns = model.columns;
-  base.ridge = model.ridge;
-  return best_fit(records, base).held_out_nmse;
-}
-
-/// What the equations say of records that they know, those of a law's own motion, less that law;
-/// nothing where it moves otherwise than the records, or where they leave less than `least_nmse`.
-std::optional<Eigen::VectorXd> error_of_equations(const std::vector<Series>& records,
-                                                  const Scale& scale, const Model& model,
-                                                  const Joint& joint, double least_nmse) {
-  const std::optional<law::Law> law = law_of(model, scale);
-  if (!law) return std::nullopt;
-  std::vector<Series> known;
-  for (const Series& record : records) {
-    auto moved = moved_surrogate(record, *law, 0.0, known.size());
-    if (!moved) return std::nullopt;
-    known.push_back(std::move(*moved));
-  }
-  Model again = model;
-  const Joint there = fit_jointly(again, known, model.ridge, scale);
-  if (!there.ok || there.size() != joint.size()) return std::nullopt;
-  if (nmse_of(again, known) < least_nmse) return std::nullopt;
-  return unknowns_of(again, there) - unknowns_of(model, joint);
-}
-
-/// The law of whose motion the equations say what they say of the records (indirect inference;
-/// Gourieroux, Monfort and Renault, 1993): friction's leaps, seen through a test function, bend
-/// them. A part of what was taken off stays in the deviation.
-void correct_by_own_motion(const std::vector<Series>& records, const Scale& scale, Model& model,
-                           Joint& joint) {
-  const Eigen::VectorXd said = unknowns_of(model, joint);
-  const Eigen::ArrayXd std = joint.covariance.diagonal().array().max(0.0).sqrt();
-  const double least_nmse = kOfTheirOwn * nmse_of(model, records);
-  const auto first = error_of_equations(records, scale, model, joint, least_nmse);
-  if (!first) return;
-  Eigen::VectorXd error = *first;
-  bool found = false;
-  for (int round = 0; round < kCorrections && !found; ++round) {
-    if ((error.array().abs() > kMostError * (said.array().abs() + std)).any()) break;
-    const auto next =
-        error_of_equations(records, scale, with(model, joint, said - error), joint, least_nmse);
-    if (!next) break;
-    const Eigen::ArrayXd allowed = kCorrected * std + kErrorStays * error.array().abs();
-    found = ((*next - error).array().abs() < allowed).all();
-    error = 0.5 * (error + *next);  // it swings
-  }
-  if (found) {
-    model = with(std::move(model), joint, said - error);
-    error *= kErrorStays;
-  } else {
-    error = *first;
-  }
-  joint.covariance += error * error.transpose();
-}
-
 /// Where the equations' figures stay: those by which the records' whole motion is left less, held
 /// out.
 void keep_for_free_run(Moved& moved, std::size_t records) {
   FreeRunError& left = moved.model.free_run;
   const bool better = left.nmse_of_motion < kMovesBetter * left.nmse_of_equations;
-  if (left.followed || !better || moved.shot.segments != records) return;
+  if (!better || moved.shot.segments != records) return;
   left.has_figures = true;
   const Eigen::VectorXd apart = moved.shot.unknowns - unknowns_of(moved.model, moved.joint);
   moved.model.for_free_run = {moved.shot.unknowns,
@@ -417,11 +394,12 @@ Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model
   if (!moved.shot.ok) return out;
   out.ok = true;
   out.samples = samples_of(part);
-  out.followed = follows(moved.shot, noise_m, kNearlyWhite);
-  out.is_noise = follows(moved.shot, noise_m);
+  out.is_noise =
+      follows(moved.shot, noise_m) || of_noise_alone(moved, noise_with_force(records), part, scale);
+  out.followed = out.is_noise || follows(moved.shot, noise_m, kNearlyWhite);
   out.compared = all || forms.empty();
   out.nmse = moved.shot.held_out_nmse;
-  out.model = with(moved.model, moved.joint, moved.shot.unknowns);
+  out.model = with_unknowns(moved.model, moved.joint, moved.shot.unknowns);
   return out;
 }
 
@@ -452,15 +430,20 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
   if (follows(best.shot, noise_m, kNearlyWhite))
     best = surest_of_fading(best, scale, drives_of(records, kShortly), drives);
   judge(best, drives, scale, noise_m);
+  if (!best.model.free_run.by_motion) keep_for_free_run(best, records.size());
+  if (auto beside_noise = shot_beside_noise(best, records, drives, scale)) {
+    best.model.free_run.by_motion =
+        log_size(beside_noise->covariance) < log_size(best.joint.covariance);
+    if (best.model.free_run.by_motion) best.shot = *std::move(beside_noise);
+  }
   if (best.model.free_run.by_motion) {
     const Eigen::VectorXd apart = best.shot.unknowns - unknowns_of(best.model, best.joint);
-    best.model = with(std::move(best.model), best.joint, best.shot.unknowns);
+    best.model = with_unknowns(std::move(best.model), best.joint, best.shot.unknowns);
     best.joint.covariance = best.shot.covariance;
     // It may have ended beside the least: as uncertain as both ways are apart.
     if (!best.model.free_run.followed) best.joint.covariance += apart * apart.transpose();
     best.joint.half_difference.setZero();
   } else {
-    keep_for_free_run(best, records.size());
     correct_by_own_motion(records, scale, best.model, best.joint);
   }
   model = std::move(best.model);

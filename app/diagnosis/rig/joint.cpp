@@ -352,4 +352,25 @@ std::optional<Trial> try_change(const Model& model, const std::vector<Series>& r
   return best;
 }
 
+Model with_unknowns(Model model, const Joint& joint, const Eigen::VectorXd& unknowns) {
+  const auto n = static_cast<Eigen::Index>(joint.coefficients);
+  model.fit.theta = unknowns.head(n);
+  for (std::size_t k = 0; k < joint.places.size(); ++k)
+    for (const std::size_t c : joint.places[k].columns)
+      (joint.places[k].of == Place::Of::kA ? model.columns[c].a : model.columns[c].b) =
+          unknowns[n + static_cast<Eigen::Index>(k)];
+  return model;
+}
+
+Eigen::VectorXd unknowns_of(const Model& model, const Joint& joint) {
+  const auto n = static_cast<Eigen::Index>(joint.coefficients);
+  Eigen::VectorXd out{n + static_cast<Eigen::Index>(joint.places.size())};
+  out.head(n) = model.fit.theta;
+  for (std::size_t k = 0; k < joint.places.size(); ++k) {
+    const Regressor& c = model.columns[joint.places[k].columns[0]];
+    out[n + static_cast<Eigen::Index>(k)] = joint.places[k].of == Place::Of::kA ? c.a : c.b;
+  }
+  return out;
+}
+
 }  // namespace dampline::app::rig

@@ -36,6 +36,11 @@ struct Joint {
   }
 };
 
+/// A model's coefficients, then its places.
+[[nodiscard]] Eigen::VectorXd unknowns_of(const Model& model, const Joint& joint);
+/// The model with others.
+[[nodiscard]] Model with_unknowns(Model model, const Joint& joint, const Eigen::VectorXd& unknowns);
+
 /// Whether a change of the friction over a record scales the column.
 [[nodiscard]] bool is_friction_like(const Regressor& column) noexcept;
 /// On which side of the force a column of memory acts: 1, -1, or 0 for both.

@@ -83,10 +83,12 @@ inline constexpr double kLongestMove = 0.2;  // of a place at once
 inline constexpr double kHalvesApart = 3.0;  // deviations: halves differ, and the deviation widens
 
 // The law by its own motion.
-inline constexpr double kFollowed = 1.05;    // times the deflection's noise: nothing more is left
-inline constexpr double kExact = 1e-8;       // nmse of the motion: the same
-inline constexpr double kWhite = 1.2;        // times as dense as beside the motion: the same
-inline constexpr double kNearlyWhite = 1.5;  // the same, over a part of the records
+inline constexpr double kFollowed = 1.05;     // times the deflection's noise: nothing more is left
+inline constexpr double kExact = 1e-8;        // nmse of the motion: the same
+inline constexpr double kWhite = 1.2;         // times as dense as beside the motion: the same
+inline constexpr double kSilentForce = 3e-4;  // of its rms: noise that moves nothing visibly
+inline constexpr double kAsMuch = 0.33;       // of what noise of the force makes, or the other way
+inline constexpr double kNearlyWhite = 1.5;   // the same, over a part of the records
 inline constexpr std::array kSpeeds{1.0, 0.5, 2.0};  // of a friction that falls: starts
 inline constexpr double kScreened = 60.0;  // periods of the motion, by which forms are compared
 inline constexpr std::size_t kScreenedEffects = 5;  // of a step, the first
