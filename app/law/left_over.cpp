@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -42,6 +43,17 @@ void LeftOver::transform() {
     left_[k] += std::norm(a - b);
   }
   ++segments_;
+}
+
+double LeftOver::quietest() const {
+  if (segments_ < kFewestSegments) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = kFewestBins; k + kFewestBins <= kSize / 2; k += kFewestBins)
+    least = std::min(
+        least, std::accumulate(left_.begin() + static_cast<std::ptrdiff_t>(k),
+                               left_.begin() + static_cast<std::ptrdiff_t>(k + kFewestBins), 0.0));
+  constexpr double kOfWhite = 4.0 * 1.5 * static_cast<double>(kSize);  // of the window, in a line
+  return least / (kFewestBins * kOfWhite * static_cast<double>(segments_));
 }
 
 std::optional<LeftDensity> LeftOver::density() const {

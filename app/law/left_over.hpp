@@ -25,6 +25,9 @@ class LeftOver {
   void gap() noexcept { fill_ = 0; }
   /// Absent where too little lies beside the motion, or the record is too short.
   [[nodiscard]] std::optional<LeftDensity> density() const;
+  /// Variance of the white noise that is as dense as what is left in the quietest sixteen
+  /// neighbouring lines of its spectrum: no more noise is in it. 0: the record is too short.
+  [[nodiscard]] double quietest() const;
 
  private:
   static constexpr std::size_t kSize = Fourier512::kSize;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "app/law/noise.hpp"
 
+#include <cmath>
+
+#include "app/law/left_over.hpp"
 #include "dampline/numeric/random.hpp"
 
 namespace dampline::app::law {
@@ -25,6 +28,12 @@ VectorXd force_of(const Input& input) {
 }
 
 }  // namespace
+
+double white_rms(const VectorXd& values) {
+  LeftOver spectrum;
+  for (const double value : values) spectrum.add(value, value);
+  return std::sqrt(spectrum.quietest());
+}
 
 Shot follow_own_noise(const LawOf& law_of, const Shot& shot, const std::vector<Drive>& drives,
                       const std::vector<Noise>& noise, std::uint64_t seed) {

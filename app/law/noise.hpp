@@ -14,6 +14,9 @@ struct Noise {
   double deflection_m{0.0};
 };
 
+/// Rms of the white noise in a signal: no more than it has where its spectrum is quietest.
+[[nodiscard]] double white_rms(const Eigen::VectorXd& values);
+
 /// What the law leaves of records that it would itself have made, with so much noise: its motion
 /// under the measured force and the noise that the mass feels, not the law, is followed as `shot`
 /// was, from segment to segment. `noise`: of each drive. Not ok where the law runs away.

@@ -50,6 +50,19 @@ TEST(LeftOver, KnowsWhereTheMotionIsThoughSegmentsDoNotMeet) {
   EXPECT_GT(ratio_of(out), 10.0);
 }
 
+TEST(LeftOver, KnowsHowNoisyItIsBesideTonesUpToAThirdOfTheRate) {
+  std::mt19937_64 random{3};
+  std::normal_distribution<double> normal;
+  LeftOver out;
+  for (int i = 0; i < 20'000; ++i) {
+    double tones = 0.0;
+    for (int k = 1; k <= 33; ++k)
+      tones += std::sin(2.0 * std::numbers::pi * 0.01 * k * i + static_cast<double>(k * k));
+    out.add(0.0, 20.0 * tones + 0.5 * normal(random));
+  }
+  EXPECT_NEAR(std::sqrt(out.quietest()), 0.5, 0.03);
+}
+
 TEST(LeftOver, SaysNothingWhereItCannotTell) {
   EXPECT_FALSE(left_of(2'000, 0.06, 0.0).density().has_value());  // too short
   EXPECT_FALSE(left_of(20'000, 0.4, 0.0).density().has_value());  // nothing beside the motion

@@ -216,7 +216,7 @@ std::vector<law::Noise> noise_with_force(const std::vector<Series>& records) {
   std::vector<law::Noise> out;
   bool loud = false;
   for (const Series& s : records) {
-    out.push_back({white_noise(s.force_n), s.noise_m});
+    out.push_back({law::white_rms(s.force_n), s.noise_m});
     const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
     loud = loud || out.back().force_n > kSilentForce * rms_n;
   }
