@@ -214,13 +214,8 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
 /// White noise of the records; empty where that of the force moves nothing visibly.
 std::vector<law::Noise> noise_with_force(const std::vector<Series>& records) {
   std::vector<law::Noise> out;
-  bool loud = false;
-  for (const Series& s : records) {
-    out.push_back({law::white_rms(s.force_n), s.noise_m});
-    const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
-    loud = loud || out.back().force_n > kSilentForce * rms_n;
-  }
-  if (!loud) out.clear();
+  if (!is_force_noisy(records)) return out;
+  for (const Series& s : records) out.push_back({law::white_rms(s.force_n), s.noise_m});
   return out;
 }
 
@@ -378,6 +373,13 @@ void keep_for_free_run(Moved& moved, std::size_t records) {
 }
 
 }  // namespace
+
+bool is_force_noisy(const std::vector<Series>& records) {
+  return std::any_of(records.begin(), records.end(), [](const Series& s) {
+    const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
+    return law::white_rms(s.force_n) > kSilentForce * rms_n;
+  });
+}
 
 Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model,
                           double forms_below) {

@@ -7,6 +7,9 @@
 
 namespace dampline::app::rig {
 
+/// Whether the force has white noise that moves the mass visibly, where its spectrum is quietest.
+[[nodiscard]] bool is_force_noisy(const std::vector<Series>& records);
+
 /// What a model leaves of the motion of a part of the records, its figures where they leave least.
 struct Screened {
   bool ok{false};        ///< it can be moved, and was

@@ -36,7 +36,7 @@ Screened screened_with(const State& s, const ColumnSet& more, double forms_below
 /// An effect by its motion.
 struct Moving {
   std::size_t place{0};  ///< in the order
-  bool friction{true};   ///< the base's stays beside it
+  bool friction{true};   ///< the base's stays beside it; otherwise damping stands for it
   Screened screened;
 };
 
@@ -50,7 +50,7 @@ Moving moved_with(const State& s, const std::vector<Ranked>& order, std::size_t 
   const ColumnSet& columns = order[place].candidate->columns;
   if (friction) return {place, true, screened_with(s, columns, forms_below)};
   State without = s;
-  without.base_friction_left = false;
+  set_base(without, false, true);
   return {place, false, screened_with(without, columns, forms_below)};
 }
 
@@ -59,10 +59,10 @@ bool is_damped(const State& s) {
          s.library.base.end();
 }
 
-/// The form that the motion found, in the library; without the base's friction where it goes
-/// better.
+/// The form that the motion found, in the library; with damping instead of the base's friction
+/// where that goes better.
 void take_form(State& s, const Candidate& candidate, const Moving& moving) {
-  if (!moving.friction) set_base(s, false, is_damped(s));
+  if (!moving.friction) set_base(s, false, true);
   const ColumnSet set = judge(s, joined(chosen_columns(s), candidate.columns)).set;
   for (const Eigen::Index c : candidate.columns)
     s.library.columns[static_cast<std::size_t>(c)] =
@@ -125,8 +125,9 @@ std::vector<Moving>::iterator plainest_of_best(std::vector<Moving>& moved,
 }  // namespace
 
 ByMotion prefer_what_moves(State& s, std::vector<Ranked>& order) {
+  if (!s.refine || !filtered(s)) return ByMotion::kUnknown;
   // Noise of the force moves the mass too: no law follows it.
-  if (!s.refine || !filtered(s) || floor_of(s, chosen_columns(s)).noise_share > kStructured)
+  if (floor_of(s, chosen_columns(s)).noise_share > kStructured && is_force_noisy(s.records))
     return ByMotion::kUnknown;
   const Screened now = screened_with(s, {}, 0.0);
   if (!now.ok) return ByMotion::kUnknown;
