@@ -12,6 +12,8 @@ namespace dampline::app::law {
 struct LeftDensity {
   double within;  ///< where the motion is
   double beside;
+  [[nodiscard]] double ratio() const noexcept { return within / beside; }
+  [[nodiscard]] double excess() const noexcept { return within - beside; }
 };
 
 /// Whether what a law leaves of a motion is more than noise: spectra of both, segments of 512

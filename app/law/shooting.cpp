@@ -13,7 +13,6 @@
 
 #include "app/beside.hpp"
 #include "app/law/block_fit.hpp"
-#include "app/law/left_over.hpp"
 #include "app/law/start.hpp"
 
 namespace dampline::app::law {
@@ -87,7 +86,7 @@ class Shooting {
   bool settle(const VectorXd& unknowns);
   bool descend(VectorXd& unknowns, double enough, double& squares);
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts, Reach reach) const;
-  void look_for_places(const std::vector<Linear>& parts, Shot& out) const;
+  [[nodiscard]] std::optional<LeftDensity> density_of(const std::vector<Linear>& parts) const;
   [[nodiscard]] Shot shot_of(const VectorXd& unknowns, double squares) const;
   Shot judge(const VectorXd& unknowns, double squares, Reach reach);
 
@@ -355,8 +354,7 @@ std::vector<Sums> Shooting::blocks_of(const std::vector<Linear>& parts, Reach re
   return out;
 }
 
-/// Where what is left lies.
-void Shooting::look_for_places(const std::vector<Linear>& parts, Shot& out) const {
+std::optional<LeftDensity> Shooting::density_of(const std::vector<Linear>& parts) const {
   LeftOver spectra;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const Drive& d = drives_[segments_[k].drive];
@@ -369,10 +367,7 @@ void Shooting::look_for_places(const std::vector<Linear>& parts, Shot& out) cons
         spectra.gap();
     }
   }
-  const std::optional<LeftDensity> density = spectra.density();
-  if (!density) return;
-  out.density_ratio = density->within / density->beside;
-  out.excess_density = density->within - density->beside;
+  return spectra.density();
 }
 
 /// Before anything is known of its deviations.
@@ -413,7 +408,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares, Reach reach) {
     out.covariance += by * by.transpose();
   }
   out.held_out_nmse = fit.held_out_squares() / variance_m2_;
-  look_for_places(parts, out);
+  out.density = density_of(parts);
   return out;
 }
 
@@ -462,7 +457,7 @@ Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
   double squares = 0.0;
   for (const Linear& l : parts) squares += l.left.squaredNorm();
   Shot out = shot_of(unknowns, squares);
-  look_for_places(parts, out);
+  out.density = density_of(parts);
   return out;
 }
 

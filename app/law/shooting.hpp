@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/law/free_run.hpp"
+#include "app/law/left_over.hpp"
 
 namespace dampline::app::law {
 
@@ -28,12 +29,9 @@ struct Shot {
   Eigen::MatrixXd
       covariance;    ///< from the scatter of blocks in time, no less than white noise makes
   double nmse{0.0};  ///< of the deflection
-  double held_out_nmse{0.0};  ///< each of five parts by the unknowns without it
-  double residual_m{0.0};     ///< rms
-  /// Density of what is left where the motion is, over that beside it; 1: noise (LeftOver). Absent:
-  /// unknown.
-  std::optional<double> density_ratio{};
-  double excess_density{0.0};  ///< of what is left, where the motion is less beside it; 0: unknown
+  double held_out_nmse{0.0};             ///< each of five parts by the unknowns without it
+  double residual_m{0.0};                ///< rms
+  std::optional<LeftDensity> density{};  ///< of what is left; noise has a ratio of 1
   double segment_s{0.0};
   double first_segment_s{0.0};  ///< the shortest that were followed
   std::size_t segments{0};

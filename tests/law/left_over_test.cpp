@@ -11,12 +11,9 @@
 namespace dampline::app::law {
 namespace {
 
-/// A motion of `share` of the rate and below. What is left: noise of 1, and `missed` of the motion.
-double ratio_of(const LeftOver& left) {
-  const LeftDensity density = left.density().value();
-  return density.within / density.beside;
-}
+double ratio_of(const LeftOver& left) { return left.density().value().ratio(); }
 
+/// A motion of `share` of the rate and below. What is left: noise of 1, and `missed` of the motion.
 LeftOver left_of(int samples, double share, double missed, bool gaps = false) {
   std::mt19937_64 random{3};
   std::normal_distribution<double> normal;

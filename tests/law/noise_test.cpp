@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 namespace dampline::app::law {
@@ -61,13 +60,15 @@ TEST(OwnNoise, IsWhatTheTrueLawLeavesAndNotWhatAnotherDoes) {
     const Shot right = follow(hardening, truth, drives, kSegmentS);
     const Shot own = follow_own_noise(hardening, right, drives, {kNoise}, 7);
     ASSERT_TRUE(right.ok && own.ok);
-    EXPECT_GT(right.density_ratio.value(), 2.0) << "the force's noise is seen";
-    EXPECT_NEAR(std::log(right.excess_density / own.excess_density), 0.0, std::log(1.6)) << seed;
+    EXPECT_GT(right.density.value().ratio(), 2.0) << "the force's noise is seen";
+    EXPECT_NEAR(std::log(right.density->excess() / own.density.value().excess()), 0.0,
+                std::log(1.6))
+        << seed;
     EXPECT_NEAR(right.residual_m, own.residual_m, 0.15 * own.residual_m);
     const Shot wrong = follow(hardening, softer, drives, kSegmentS);
     ASSERT_TRUE(wrong.ok);
-    EXPECT_GT(wrong.excess_density,
-              5.0 * follow_own_noise(hardening, wrong, drives, {kNoise}, 7).excess_density);
+    const Shot of_wrong = follow_own_noise(hardening, wrong, drives, {kNoise}, 7);
+    EXPECT_GT(wrong.density.value().excess(), 5.0 * of_wrong.density.value().excess());
   }
 }
 
@@ -75,7 +76,7 @@ TEST(OwnNoise, IsWhiteWhereOnlyTheDeflectionIsNoisy) {
   const std::vector<Drive> drives{measured(1)};
   const Shot right = follow(hardening, Eigen::Vector4d{2.0, 5.0, 500.0, kCubic}, drives, kSegmentS);
   const Shot own = follow_own_noise(hardening, right, drives, {{0.0, kNoise.deflection_m}}, 7);
-  EXPECT_LT(own.density_ratio.value(), 1.2);
+  EXPECT_LT(own.density.value().ratio(), 1.2);
   EXPECT_NEAR(own.residual_m, kNoise.deflection_m, 0.05 * kNoise.deflection_m);
 }
 

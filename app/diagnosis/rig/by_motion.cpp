@@ -9,9 +9,7 @@
 
 #include "app/diagnosis/rig/law.hpp"
 #include "app/diagnosis/rig/own_motion.hpp"
-#include "app/diagnosis/rig/surrogate.hpp"
 #include "app/diagnosis/rig/thresholds.hpp"
-#include "app/diagnosis/rig/trials.hpp"
 #include "app/law/noise.hpp"
 #include "app/law/shooting.hpp"
 #include "app/law/start.hpp"
@@ -102,7 +100,7 @@ Moved move(const Model& model, const Joint& joint, const Eigen::VectorXd& start,
 /// otherwise.
 bool follows(const law::Shot& shot, double noise_m, double white = kWhite) {
   if (shot.nmse < kExact) return true;
-  if (shot.density_ratio) return *shot.density_ratio < white;
+  if (shot.density) return shot.density->ratio() < white;
   return shot.residual_m < kFollowed * noise_m;
 }
 
@@ -181,7 +179,8 @@ void describe(const Moved& moved, const law::Shot& motion, const std::vector<law
   out.segment_s = motion.segment_s;
   out.nmse_of_motion = motion.held_out_nmse;
   out.residual_m = motion.residual_m;
-  out.density_ratio = motion.density_ratio;
+  out.density_ratio.reset();
+  if (motion.density) out.density_ratio = motion.density->ratio();
   out.nmse_of_equations =
       left_by(moved, unknowns_of(moved.model, moved.joint), motion.segment_s, drives, scale);
 }
@@ -214,8 +213,13 @@ void judge(Moved& moved, const std::vector<law::Drive>& drives, const Scale& sca
 /// White noise of the records; empty where that of the force moves nothing visibly.
 std::vector<law::Noise> noise_with_force(const std::vector<Series>& records) {
   std::vector<law::Noise> out;
-  if (!is_force_noisy(records)) return out;
-  for (const Series& s : records) out.push_back({law::white_rms(s.force_n), s.noise_m});
+  bool loud = false;
+  for (const Series& s : records) {
+    out.push_back({law::white_rms(s.force_n), s.noise_m});
+    const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
+    loud = loud || out.back().force_n > kSilentForce * rms_n;
+  }
+  if (!loud) out.clear();
   return out;
 }
 
@@ -223,11 +227,13 @@ std::vector<law::Noise> noise_with_force(const std::vector<Series>& records) {
 /// force makes of its own motion, if that is of the same size.
 std::optional<double> of_noise_alone(const Moved& briefly, const std::vector<law::Noise>& noise,
                                      const std::vector<law::Drive>& drives, const Scale& scale) {
-  if (!briefly.shot.ok || !briefly.shot.density_ratio || noise.empty()) return std::nullopt;
+  if (!briefly.shot.ok || !briefly.shot.density || noise.empty()) return std::nullopt;
   const law::Shot made = law::follow_own_noise(law_at(briefly.model, briefly.joint, scale),
                                                briefly.shot, drives, noise, kNoiseSeed);
-  const double times = briefly.shot.excess_density / made.excess_density;
-  return times > kAsMuch && times < 1.0 / kAsMuch ? made.density_ratio : std::nullopt;
+  if (!made.density) return std::nullopt;
+  const double times = briefly.shot.density->excess() / made.density->excess();
+  if (!(times > kAsMuch && times < 1.0 / kAsMuch)) return std::nullopt;
+  return made.density->ratio();
 }
 
 /// Where noise of the force is all that a law misses: its figures over short segments, which forget
@@ -236,8 +242,9 @@ std::optional<law::Shot> shot_beside_noise(Moved& moved, const std::vector<Serie
                                            const std::vector<law::Drive>& drives,
                                            const Scale& scale) {
   FreeRunError& out = moved.model.free_run;
+  if (out.followed) return std::nullopt;
   const std::vector<law::Noise> noise = noise_with_force(records);
-  if (out.followed || noise.empty()) return std::nullopt;
+  if (noise.empty()) return std::nullopt;
   Moved briefly = move(moved.model, moved.joint, moved.shot.unknowns, scale, drives,
                        law::Reach::kFirstSegments);
   const std::optional<double> ratio = of_noise_alone(briefly, noise, drives, scale);
@@ -375,10 +382,7 @@ void keep_for_free_run(Moved& moved, std::size_t records) {
 }  // namespace
 
 bool is_force_noisy(const std::vector<Series>& records) {
-  return std::any_of(records.begin(), records.end(), [](const Series& s) {
-    const double rms_n = std::sqrt((s.force_n.array() - s.force_n.mean()).square().mean());
-    return law::white_rms(s.force_n) > kSilentForce * rms_n;
-  });
+  return !noise_with_force(records).empty();
 }
 
 Screened screen_by_motion(std::vector<Series> records, const Scale& scale, Model model,

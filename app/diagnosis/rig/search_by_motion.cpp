@@ -127,7 +127,7 @@ std::vector<Moving>::iterator plainest_of_best(std::vector<Moving>& moved,
 ByMotion prefer_what_moves(State& s, std::vector<Ranked>& order) {
   if (!s.refine || !filtered(s)) return ByMotion::kUnknown;
   // Noise of the force moves the mass too: no law follows it.
-  if (floor_of(s, chosen_columns(s)).noise_share > kStructured && is_force_noisy(s.records))
+  if (is_force_noisy(s.records) && floor_of(s, chosen_columns(s)).noise_share > kStructured)
     return ByMotion::kUnknown;
   const Screened now = screened_with(s, {}, 0.0);
   if (!now.ok) return ByMotion::kUnknown;
