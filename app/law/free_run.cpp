@@ -16,15 +16,18 @@ constexpr double kWindow = 20.0;    // Kaiser's beta
 constexpr int kMostEvents = 40;     // between two samples
 constexpr int kSecants = 30;
 constexpr double kWithin = 1e-13;  // of the greatest speed or force about an event
+constexpr double kFaded = 40.0;    // exponent beyond which nothing is left
+
+double faded(double x) noexcept { return x < kFaded ? std::exp(-x) : 0.0; }
 
 /// Without its sign; `per_speed`: 1 / b.
 double level_of(Kind kind, double per_speed, double x, double v) noexcept {
   const double speeds = std::abs(v) * per_speed;
   switch (kind) {
     case Kind::kFading:
-      return std::exp(-speeds);
+      return faded(speeds);
     case Kind::kFadingSquare:
-      return std::exp(-speeds * speeds);
+      return faded(speeds * speeds);
     case Kind::kFadingSlowly:
       return 1.0 / (1.0 + speeds * speeds);
     case Kind::kProgressive:

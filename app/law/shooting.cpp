@@ -27,10 +27,12 @@ constexpr double kLeastLonger = 1.5;
 constexpr double kMuchMore = 4.0;  // times the squares left: longer segments are not followed
 constexpr int kRounds = 15;
 constexpr int kStateRounds = 6;
-constexpr double kArrived = 0.01;  // of a deviation
-constexpr double kNearly = 0.3;    // where longer segments follow
-constexpr double kLittle = 1e-4;   // of the squares: a step that gains no more is the last
-constexpr double kFar = 30.0;      // times the motion's range: it ran away
+constexpr double kArrived = 0.01;    // of a deviation
+constexpr double kNearly = 0.3;      // where longer segments follow
+constexpr double kLittle = 1e-4;     // of the squares: a step that gains no more is the last
+constexpr double kCoarsely = 0.1;    // the same of the states, where the unknowns move them next
+constexpr double kTrialGain = 1e-3;  // the same of the unknowns, where forms are compared
+constexpr double kFar = 30.0;        // times the motion's range: it ran away
 // Of an unknown's scale: where sticking makes the error ragged, wider differences see its course.
 constexpr std::array kDifferences{1e-6, 1e-4, 3e-3};
 constexpr double kMostMove = 0.5;  // of an unknown that stays above 0
@@ -83,8 +85,8 @@ class Shooting {
                                std::vector<Linear>& out);
   [[nodiscard]] std::vector<Segment> moved(const std::vector<Linear>& parts,
                                            const VectorXd& by) const;
-  bool settle(const VectorXd& unknowns);
-  bool descend(VectorXd& unknowns, double enough, double& squares);
+  bool settle(const VectorXd& unknowns, double little);
+  bool descend(VectorXd& unknowns, double enough, double little, double& squares);
   [[nodiscard]] std::vector<Sums> blocks_of(const std::vector<Linear>& parts, Reach reach) const;
   [[nodiscard]] std::optional<LeftDensity> density_of(const std::vector<Linear>& parts) const;
   [[nodiscard]] Shot shot_of(const VectorXd& unknowns, double squares) const;
@@ -281,8 +283,8 @@ std::vector<Segment> Shooting::moved(const std::vector<Linear>& parts, const Vec
   return out;
 }
 
-/// Fits the states alone.
-bool Shooting::settle(const VectorXd& unknowns) {
+/// Fits the states alone, until a step gains `little` of the squares.
+bool Shooting::settle(const VectorXd& unknowns, double little) {
   double squares = squares_of(unknowns, segments_);
   std::vector<Linear> parts;
   for (int i = 0; i < kStateRounds; ++i) {
@@ -290,7 +292,7 @@ bool Shooting::settle(const VectorXd& unknowns) {
     std::vector<Segment> there = moved(parts, {});
     const double then = squares_of(unknowns, there, segments_);
     if (!(then < squares)) break;
-    const bool enough = then > (1.0 - 1e-4) * squares;
+    const bool enough = then > (1.0 - little) * squares;
     segments_ = std::move(there);
     squares = then;
     if (enough) break;
@@ -298,8 +300,9 @@ bool Shooting::settle(const VectorXd& unknowns) {
   return std::isfinite(squares);
 }
 
-/// Levenberg and Marquardt over the unknowns; false where no step could be tried.
-bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
+/// Levenberg and Marquardt over the unknowns, until a step goes `enough` deviations or gains
+/// `little` of the squares; false where no step could be tried.
+bool Shooting::descend(VectorXd& unknowns, double enough, double little, double& squares) {
   squares = squares_of(unknowns, segments_);
   double damping = 1e-3;
   std::size_t width = 0;
@@ -326,7 +329,7 @@ bool Shooting::descend(VectorXd& unknowns, double enough, double& squares) {
       arrived = (by.array().abs() < enough * (variance * inverse.diagonal().array().abs()).sqrt() +
                                         1e-9 * scale_.array())
                     .all();
-      arrived = arrived || (damping < 0.1 && then > (1.0 - kLittle) * squares);
+      arrived = arrived || (damping < 0.1 && then > (1.0 - little) * squares);
       unknowns += by;
       segments_ = std::move(there);
       squares = then;
@@ -420,11 +423,13 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
   length = std::min(length, longest);
   if (reach != Reach::kWhole) longest = length;
   cut(length);
-  if (!settle(unknowns)) return {};
+  if (!settle(unknowns, kCoarsely)) return {};
   const Index first = length;
   double squares = 0.0;
-  const bool is_last = length >= longest && reach != Reach::kTrial;
-  if (!descend(unknowns, is_last ? kArrived : kNearly, squares)) return {};
+  const bool is_trial = reach == Reach::kTrial;
+  const bool is_last = length >= longest && !is_trial;
+  const double little = is_trial ? kTrialGain : kLittle;
+  if (!descend(unknowns, is_last ? kArrived : kNearly, little, squares)) return {};
   double longer = kLonger;
   while (length < longest && longer > kLeastLonger) {
     const VectorXd before = unknowns;
@@ -434,7 +439,8 @@ Shot Shooting::fit(VectorXd unknowns, Reach reach) {
     if (2 * length > longest) length = longest;  // a segment takes the rest with it
     cut(length);
     double then = 0.0;
-    if (settle(unknowns) && descend(unknowns, length < longest ? kNearly : kArrived, then) &&
+    if (settle(unknowns, kCoarsely) &&
+        descend(unknowns, length < longest ? kNearly : kArrived, kLittle, then) &&
         then < kMuchMore * squares) {
       squares = then;
       continue;
@@ -453,7 +459,8 @@ Shot Shooting::follow(const VectorXd& unknowns, double segment_s) {
   cut(static_cast<Index>(std::lround(segment_s / interval_s())));
   const Law law = law_of_(unknowns);
   std::vector<Linear> parts;
-  if (!settle(unknowns) || !follow_segments(law, 1, memories_of(law).size(), 0, parts)) return {};
+  if (!settle(unknowns, kLittle) || !follow_segments(law, 1, memories_of(law).size(), 0, parts))
+    return {};
   double squares = 0.0;
   for (const Linear& l : parts) squares += l.left.squaredNorm();
   Shot out = shot_of(unknowns, squares);

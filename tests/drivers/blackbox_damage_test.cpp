@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "drivers/blackbox/file_reader.hpp"
 #include "drivers/blackbox/format.hpp"
 #include "tests/blackbox.hpp"
 
@@ -66,6 +67,24 @@ TEST(BlackboxDamage, ATornTailIsNotReadOnIntoWhatTheBufferHeldBefore) {
     ASSERT_EQ(numbers, test::range(0, numbers.size())) << cut;
     ASSERT_GE(numbers.size(), kMany - 6) << cut;
   }
+}
+
+TEST(BlackboxDamage, ATailOfOneByteIsNotSearchedBeyondIt) {
+  const SmallBox box;
+  const std::size_t last = box.begins()[kRecords - 1];
+  const std::string until_last = box.bytes().substr(0, last);
+  const std::filesystem::path file = box.folder().file(1);
+  BlackboxFileReader reader;
+  // The last record stays in the buffer, where a search for its mark must not come to it.
+  write_bytes(file, until_last + "??" + box.bytes().substr(last));
+  ASSERT_EQ(reader.open(file.c_str()), BlackboxFileReader::Opened::kOpen);
+  write_bytes(file, until_last + "?");
+  ASSERT_EQ(reader.open(file.c_str()), BlackboxFileReader::Opened::kOpen);
+  BlackboxRecord record;
+  std::uint64_t count = 0;
+  while (reader.next(record) == BlackboxFileReader::Status::kRecord) ++count;
+  EXPECT_EQ(count, kRecords - 1);
+  EXPECT_TRUE(reader.torn());
 }
 
 TEST(BlackboxDamage, NoneIsSeenInAWholeOne) {

@@ -147,6 +147,11 @@ TEST(Decompressor, TakesNoOtherForm) {
   }
 }
 
+TEST(Decompressor, SaysWhatIsWrongWithDamagedData) {
+  const std::string no_such_block = "\x07";
+  EXPECT_THAT(unpack(*make_deflate(), no_such_block, 1).fault, HasSubstr("invalid block type"));
+}
+
 TEST(Decompressor, KnowsItsDataByTheFirstBytes) {
   const std::string gzip = deflated("x", 31);
   const std::string zstd = packed_by_zstd("x");

@@ -301,16 +301,26 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
   return best;
 }
 
+/// A part of the records, and how likely a law must be over it.
+struct Excerpt {
+  std::vector<law::Drive> drives;
+  double ruled_out;
+};
+
 /// The model with another way in which friction falls with speed, moved over the whole; nothing
-/// where a short part of the records rules it out, or it does not move.
-std::optional<Moved> in_other_form(const Moved& best, const Moved& best_shortly, std::size_t column,
-                                   Kind shape, const Scale& scale,
-                                   const std::vector<law::Drive>& part,
+/// where a part of the records rules it out, or it does not move.
+std::optional<Moved> in_other_form(const Moved& best, std::size_t column, Kind shape,
+                                   const Scale& scale, const std::vector<Excerpt>& excerpts,
                                    const std::vector<law::Drive>& drives) {
   Moved other = best;
   other.model.columns[column].kind = shape;
-  other = move_quickly(other.model, other.joint, best.shot.unknowns, scale, part);
-  if (!other.shot.ok || as_likely(other.shot, best_shortly.shot, part) < kRuledOut) return {};
+  for (const Excerpt& part : excerpts) {
+    other = move_quickly(other.model, other.joint, other.shot.unknowns, scale, part.drives);
+    if (!other.shot.ok) return {};
+    const law::Shot as_is = law::follow(law_at(best.model, best.joint, scale), best.shot.unknowns,
+                                        part.drives, other.shot.segment_s);
+    if (as_is.ok && as_likely(other.shot, as_is, part.drives) < part.ruled_out) return {};
+  }
   other = move(other.model, other.joint, other.shot.unknowns, scale, drives);
   if (!other.shot.ok) return {};
   return other;
@@ -320,19 +330,19 @@ std::optional<Moved> in_other_form(const Moved& best, const Moved& best_shortly,
 /// one decides; and where it does not either, the others widen the deviations by what they are
 /// likely (averaging over models; Hoeting, Madigan, Raftery and Volinsky, 1999). `best` has moved
 /// over the whole.
-Moved surest_of_fading(const Moved& best, const Scale& scale, const std::vector<law::Drive>& part,
+Moved surest_of_fading(const Moved& best, const Scale& scale, const std::vector<Series>& records,
                        const std::vector<law::Drive>& drives) {
   const auto fading = std::find_if(best.model.columns.begin(), best.model.columns.end(),
                                    [](const Regressor& c) { return law::is_fading(c.kind); });
   if (fading == best.model.columns.end() || best.shot.nmse < kExact) return best;
   const auto column = static_cast<std::size_t>(fading - best.model.columns.begin());
-  const Moved shortly = move_quickly(best.model, best.joint, best.shot.unknowns, scale, part);
-  if (!shortly.shot.ok) return best;
+  const std::vector<Excerpt> excerpts{{drives_of(records, kShortly), kRuledOut},
+                                      {drives_of(records, kScreened), kRuledOutLonger}};
   std::vector<Moved> all{best};
   double segment_s = best.shot.segment_s;
   for (const Kind shape : law::kFadingForms) {
     if (shape == fading->kind) continue;
-    auto other = in_other_form(best, shortly, column, shape, scale, part, drives);
+    auto other = in_other_form(best, column, shape, scale, excerpts, drives);
     if (!other) continue;
     segment_s = std::min(segment_s, other->shot.segment_s);
     all.push_back(std::move(*other));
@@ -434,7 +444,7 @@ void refine_by_motion(std::vector<Series>& records, const Scale& scale, const Sc
   if (!best.shot.ok) best = move(model, joint, unknowns_of(model, joint), scale, drives);
   if (!best.shot.ok) return;
   if (follows(best.shot, noise_m, kNearlyWhite))
-    best = surest_of_fading(best, scale, drives_of(records, kShortly), drives);
+    best = surest_of_fading(best, scale, records, drives);
   judge(best, drives, scale, noise_m);
   if (!best.model.free_run.by_motion) keep_for_free_run(best, records.size());
   if (auto beside_noise = shot_beside_noise(best, records, drives, scale)) {

@@ -102,8 +102,9 @@ inline constexpr double kMisses = 1e-3;      // nmse of the motion: the law is n
 inline constexpr double kOtherForm = 0.999;  // of the squares left: another form of an effect
 inline constexpr double kShortly = 15.0;     // periods of the motion, which rule out other forms
 inline constexpr double kRuledOut = 3e-7;    // as likely, over those
-inline constexpr double kPlainer = 1.001;    // the same, for one with a figure less
-inline constexpr double kMovesFarBetter = 0.1;  // the same, where more than noise is left
+inline constexpr double kRuledOutLonger = 1e-26;  // the same, over kScreened
+inline constexpr double kPlainer = 1.001;         // the same, for one with a figure less
+inline constexpr double kMovesFarBetter = 0.1;    // the same, where more than noise is left
 inline constexpr double kMovesBetter = 0.8;  // of the squares left: the motion's figures are better
 inline constexpr double kOfTheirOwn =
     0.3;  // of what is left: the equations leave it of the law's own motion
