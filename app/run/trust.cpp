@@ -43,6 +43,12 @@ constexpr double kPitchLeaves = 0.03;  // of the variance
 
 using Reasons = std::vector<std::pair<Trust, std::string>>;
 
+std::string words(double value, double std, std::string_view unit) {
+  const QuantityText text = format_quantity(value, std);
+  return fmt::format("{}{}{}{}{}", text.value, text.std.empty() ? "" : " ± ", text.std,
+                     unit.empty() ? "" : " ", unit);
+}
+
 bool is_truck(const RunResult& result) { return result.kind == "truck"; }
 
 // Below the suspension's resonance the frame moves as the wheelsets do, whatever car it is.
@@ -73,6 +79,13 @@ void judge_data(const Explaining* explaining, const RunResult& result, Reasons& 
     names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", f.name, f.channel);
   if (faults.lasting || (explaining != nullptr && explaining->withheld))
     out.emplace_back(Trust::kDataFaulty, fmt::format("The data have faults: {}.", names));
+  if (explaining != nullptr && explaining->frame_gain)
+    out.emplace_back(
+        Trust::kDataFaulty,
+        fmt::format("By the frame's own motion its sensor tells {} too much, which the effects "
+                    "that were found hide: correct it, and explain anew.",
+                    words(100.0 * explaining->frame_gain->value,
+                          100.0 * explaining->frame_gain->std, "%")));
   if (result.magnitudes) judge_units(result, *result.magnitudes, out);
 }
 
@@ -222,26 +235,21 @@ void judge_speed(const Explaining* explaining, const RunResult& result, Reasons&
                                 : ", and no effect of the library is it"));
 }
 
-std::string words(const Parameter& p, double scale, const char* unit) {
-  const QuantityText text = format_quantity(scale * p.value, scale * p.std);
-  return fmt::format("{}{}{}{}{}", text.value, text.std.empty() ? "" : " ± ", text.std,
-                     *unit == '\0' ? "" : " ", unit);
-}
-
 std::string truck_numbers(const RunResult& result) {
   const Parameter* const coulomb = find_parameter(result.parameters, "coulomb");
   const Parameter* const stiffness = find_parameter(result.parameters, "stiffness");
   if (coulomb == nullptr || stiffness == nullptr) return "";
   return fmt::format(
       "Dry friction (Coulomb level) of {} and a spring of {}, identified from {} of record.",
-      words(*coulomb, 1.0, "N"), words(*stiffness, 1e-6, "MN/m"),
+      words(coulomb->value, coulomb->std, "N"),
+      words(1e-6 * stiffness->value, 1e-6 * stiffness->std, "MN/m"),
       format_duration(result.duration_s));
 }
 
 std::string rig_numbers(const RunResult& result) {
   std::string text;
   for (const Parameter& p : result.parameters)
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", p.name, words(p, 1.0, p.unit.c_str()));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", p.name, words(p.value, p.std, p.unit));
   return fmt::format("{}: the model fits. Rrse {:.3f}, from {} of record.", text,
                      result.fit.rrse.value_or(0.0), format_duration(result.duration_s));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/run/result.hpp"
+#include "dampline/snapshot.hpp"
 
 namespace dampline::app {
 
@@ -19,6 +21,8 @@ struct Explaining {
   bool withheld{false};    ///< faults of the data forbid to name an effect
   bool impossible{false};  ///< friction or spring come out negative: no law of a truck
   bool unsteady{false};    ///< a parameter changed beside what explains
+  /// By which share a truck's frame sensor tells too much.
+  std::optional<Estimate> frame_gain{};
 };
 
 /// Of the wheelsets, rms: a running car shakes more, in g it seems to shake less.

@@ -28,6 +28,7 @@ struct UnseenTruck {
   double track{1.0};  ///< of the track's irregularity
   double length_s{300.0};
   double noise_mps2{0.02};
+  double frame_gain{1.0};    ///< of its sensor
   bool told{false};          ///< of wheelbase and speed
   double size{0.0};          ///< of the effect, 0 to 1 ...
   double other{0.0};         ///< ... and what else it has
@@ -259,7 +260,8 @@ inline std::string unseen_record(UnseenTruck& t, std::uint64_t seed) {
     text += fmt::format("{:.6f}", static_cast<double>(i) / 300.0);
     for (std::size_t c = 0; c < 3; ++c) {
       const double step = (c == 0 ? 20.0 : 120.0) / 4096.0;
-      const double value = seen[c][i * 256] + 0.07 + t.noise_mps2 * normal(random);
+      const double gain = c == 0 ? t.frame_gain : 1.0;
+      const double value = gain * seen[c][i * 256] + 0.07 + t.noise_mps2 * normal(random);
       text += fmt::format(",{:.6g}", step * std::round(value / step));
     }
     text += '\n';

@@ -136,6 +136,11 @@ class TimeTravelNightlyWeek : public testing::Test {
          {"frames_processed", "frames_dropped", "frames_missing", "frames_excluded"})
       sum_[name] += count(name);
     sum_["frames_made"] += made;
+    if (HasFailure()) {
+      std::printf("%s\n", counts.dump(1).c_str());
+      std::ifstream events{live_->run() / "events.csv"};
+      for (std::string line; std::getline(events, line);) std::printf("%s\n", line.c_str());
+    }
     live_.reset();
     look_at_blackbox();
   }
@@ -195,7 +200,7 @@ TEST_F(TimeTravelNightlyWeek, EveryFrameIsAccountedForWhateverHappens) {
     for (int i = 0; i < faults && !HasFailure(); ++i) {
       drive(between(1.0, std::min(600.0, end_s / 60.0)));
       Rule& rule = rules[random_() % rules.size()];
-      happened_ += std::string{" "} + rule.name;
+      happened_ += std::string{" "} + rule.name + "@" + std::to_string(driven_s_);
       (this->*rule.act)();
       ++rule.times;
       look_at_memory();

@@ -198,6 +198,7 @@ TEST(PaperForm, ReachesTo99PercentOfTheMass) {
   fill_with(*velocities, 2.0e5, [](double v) { return std::exp(-std::abs(v) / 6.0e-3); });
   for (const double share : {0.5, 0.9, 0.99})
     EXPECT_NEAR(speed_quantile(*velocities, share), -6.0e-3 * std::log(1.0 - share), 0.26e-3);
+  EXPECT_EQ(speed_quantile(*velocities, 0.01), velocities->axis().width());
   EXPECT_EQ(speed_quantile(*velocities, 1.1), 0.064);
   const DeflectionIntegrals over_y{.p1_p1 = 1.0, .psi2_p1_p1 = 1.0, .psi4_p1_p1 = 1.0};
   const PaperForm form = fit_paper_form(*velocities, over_y, {.input_level = 5.0e-3});

@@ -110,6 +110,18 @@ TEST(Verdict, OfARangeThatClips) {
   EXPECT_TRUE(found.known_input.verdict.trusted);
 }
 
+TEST(Verdict, ColourHasNoUnit) {
+  const auto colour_db = [](double times) {
+    const auto found = changed_run([=](Motion& m) {
+      m.frame_mps2 *= times;
+      m.relative_mps2 *= times;
+    });
+    return found.weak.verdict[Reason::kColouredInput].size;
+  };
+  EXPECT_GT(colour_db(1.0), 0.1);
+  EXPECT_NEAR(colour_db(30.0), colour_db(1.0), 1e-6);
+}
+
 // Two wheelsets of one truck at 60 km/h: nulls at 4.6, 13.9, 23.1 Hz.
 TEST(Verdict, OfTheWheelbaseComb) {
   std::array<double, 32> past{};

@@ -160,6 +160,10 @@ TEST(BlackboxWriter, RotatesBySize) {
   EXPECT_EQ(alone.health.dropped, 0U);
 }
 
+TEST(BlackboxWriter, RotatesAt64MibUnlessToldOtherwise) {
+  EXPECT_EQ(BlackboxConfig{}.rotate_bytes, 64U * 1024U * 1024U);
+}
+
 TEST(BlackboxWriter, AFilesHourBeginsWithItsFirstRecord) {
   const BoxFolder folder;
   const auto writer = open_box(test::box_config(folder.path()));

@@ -116,6 +116,13 @@ TEST(Dbc, SaysThatAFileIsNotThereOrEmpty) {
   EXPECT_THAT(load_dbc(empty.path()).error_text(), HasSubstr("empty"));
 }
 
+TEST(Dbc, RefusesMoreThan64Mib) {
+  const test::TemporaryFile file{std::string{kSensors}};
+  const auto most = std::uintmax_t{64} * 1024 * 1024;
+  std::filesystem::resize_file(file.path(), most + 1);
+  EXPECT_THAT(load_dbc(file.path()).error_text(), HasSubstr("larger than 67108864 bytes"));
+}
+
 TEST(Dbc, BearsEveryTruncationAndCorruption) {
   for (std::size_t length = 0; length <= kSensors.size(); ++length) {
     static_cast<void>(parse_dbc(kSensors.substr(0, length), "cut.dbc").ok());

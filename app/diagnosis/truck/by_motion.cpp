@@ -36,9 +36,12 @@ constexpr double kBlockS = 5.0;
 constexpr double kDifference = 1e-3;  // of an unknown, for its slope
 constexpr int kMotionRounds = 15;
 constexpr int kTries = 8;
-constexpr double kLittle = 1e-5;      // of the squares: a step that gains no more is the last
-constexpr double kOtherLevel = 0.05;  // between both levels of friction: the law is another one
-constexpr double kGain = 0.004;       // the core's integral is an integrator within this
+constexpr double kLittle = 1e-5;        // of the squares: a step that gains no more is the last
+constexpr double kOtherLevel = 0.05;    // between both levels of friction: the law is another one
+constexpr double kGain = 0.004;         // the core's integral is an integrator within this
+constexpr double kNamedSigmas = 2.0;    // a gain that the equations name is one
+constexpr double kUnnamedSigmas = 3.0;  // one is told that they do not name
+constexpr std::string_view kFrameGain = "gain_error_frame";
 constexpr double kOffsetShare = 0.1;  // of the friction: first steps of the constant force
 
 bool is_elastic(Effect e) {
@@ -97,6 +100,7 @@ Index settle_of(double rate_hz) { return static_cast<Index>(kSettleS * rate_hz);
 struct Ride {
   law::Input push;
   VectorXd velocity_mps;  ///< without what is slower than about 1 Hz, and both ends
+  VectorXd frame_mps;     ///< twice the frame's, likewise
 };
 
 std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
@@ -111,18 +115,22 @@ std::vector<Ride> rides_of(const TruckSamples& samples, double law_mass_kg) {
     const VectorXd wheels = at(samples.wheelsets_mps2);
     VectorXd push_n = -law_mass_kg * (wheels.array() - wheels.mean());
     take_slow(kDriftHz, samples.rate_hz, push_n);
-    out.push_back({law::Input{push_n, 1.0 / samples.rate_hz},
-                   passed(DriftFreeIntegral{samples.rate_hz}, 2.0 * at(samples.frame_mps2) - wheels)
-                       .segment(settle, n - 2 * settle)});
+    const auto velocity_of = [&](const VectorXd& accel_mps2) -> VectorXd {
+      return passed(DriftFreeIntegral{samples.rate_hz}, accel_mps2).segment(settle, n - 2 * settle);
+    };
+    const VectorXd frame = 2.0 * at(samples.frame_mps2);
+    out.push_back({law::Input{push_n, 1.0 / samples.rate_hz}, velocity_of(frame - wheels),
+                   velocity_of(frame)});
   }
   return out;
 }
 
-/// Fits a law to its rides.
+/// Fits a law to its rides, and, where its values are one more than its unknowns, by which share
+/// the frame's sensor tells too much.
 class OwnMotion {
  public:
-  OwnMotion(const law::Document& document, std::vector<Ride> rides, double rate_hz)
-      : document_{document}, rides_{std::move(rides)}, rate_hz_{rate_hz} {}
+  OwnMotion(law::Document document, std::vector<Ride> rides, double rate_hz)
+      : document_{std::move(document)}, rides_{std::move(rides)}, rate_hz_{rate_hz} {}
 
   struct Found {
     VectorXd values;
@@ -132,6 +140,7 @@ class OwnMotion {
   };
   /// Nothing where the law runs away, or the motion does not tell its unknowns apart.
   [[nodiscard]] std::optional<Found> fit(VectorXd values, const VectorXd& scale) const;
+  [[nodiscard]] const law::Document& document() const noexcept { return document_; }
 
  private:
   [[nodiscard]] std::optional<VectorXd> left(const VectorXd& values) const;
@@ -139,14 +148,16 @@ class OwnMotion {
                                                const VectorXd& left) const;
   [[nodiscard]] double motion_squares() const;
 
-  const law::Document& document_;
+  law::Document document_;
   std::vector<Ride> rides_;
   double rate_hz_;
 };
 
 /// The law's velocity less the measured one, ride by ride.
 std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
-  const law::Law law = document_.with(values);
+  const auto unknowns = static_cast<Index>(document_.unknowns.size());
+  const law::Law law = document_.with(values.head(unknowns));
+  const double too_much = values.size() > unknowns ? values[unknowns] : 0.0;
   Index count = 0;
   for (const Ride& r : rides_) count += r.velocity_mps.size();
   VectorXd out{count};
@@ -157,7 +168,8 @@ std::optional<VectorXd> OwnMotion::left(const VectorXd& values) const {
     const VectorXd fast =
         passed(Baseline{DriftFreeIntegral::decimation(rate_hz_)}, course.velocity_mps);
     const Index n = r.velocity_mps.size();
-    out.segment(at, n) = fast.segment(settle_of(rate_hz_), n) - r.velocity_mps;
+    out.segment(at, n) =
+        fast.segment(settle_of(rate_hz_), n) - r.velocity_mps + too_much * r.frame_mps;
     at += n;
   }
   return out;
@@ -267,21 +279,79 @@ double apart(const law::Document& d, const VectorXd& values) {
   return 0.0;
 }
 
-}  // namespace
+bool names_frame_gain(const effect::Explanation& e) {
+  const auto* const end = e.step.begin() + e.step_count;
+  return std::any_of(e.step.begin(), end,
+                     [](const effect::Step& s) { return s.parameter[0].name == kFrameGain; });
+}
 
-void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out) {
-  if (!can_refine(out)) return;
-  const law::Document document = law_to_move(config, out);
-  if (!document.not_in_it.empty() || !law::FreeRun::can(document.law)) return;
+/// A record that its law is moved by; nothing where an effect but a gain of the frame is no term
+/// of it.
+std::optional<OwnMotion> own_motion(const Config& config, const SourceOptions& source,
+                                    const Explained& explained) {
+  if (!can_refine(explained)) return std::nullopt;
+  law::Document document = law_to_move(config, explained);
+  const std::size_t beside = names_frame_gain(explained.explanation) ? 1 : 0;
+  if (document.not_in_it.size() != beside || !law::FreeRun::can(document.law)) return std::nullopt;
   const TruckSamples samples =
       read_truck_samples(config, source, detect_source(config, source), kLongestRideS);
   std::vector<Ride> rides = rides_of(samples, document.law.mass_kg);
-  if (rides.empty()) return;
-  const VectorXd rows = document.values();
+  if (rides.empty()) return std::nullopt;
+  return OwnMotion{std::move(document), std::move(rides), samples.rate_hz};
+}
+
+/// The equations' figures, and the size of each.
+std::pair<VectorXd, VectorXd> start_of(const OwnMotion& motion, const Explained& explained) {
+  const VectorXd rows = motion.document().values();
   VectorXd scale = rows.cwiseAbs();
-  scale[scale.size() - 1] = kOffsetShare * out.explanation.final_coulomb_n.value;
-  const auto found = OwnMotion{document, std::move(rides), samples.rate_hz}.fit(rows, scale);
-  if (!found || !(found->held_out_nmse < found->nmse_before)) return;
+  scale[scale.size() - 1] = kOffsetShare * explained.explanation.final_coulomb_n.value;
+  return {rows, scale};
+}
+
+std::optional<OwnMotion::Found> fit_with_gain(const OwnMotion& motion, const Explained& explained) {
+  const auto [rows, scale] = start_of(motion, explained);
+  VectorXd values = VectorXd::Zero(rows.size() + 1);
+  VectorXd scales = VectorXd::Ones(rows.size() + 1);
+  values.head(rows.size()) = rows;
+  scales.head(rows.size()) = scale;
+  return motion.fit(values, scales);
+}
+
+/// Of fit_with_gain: by which share the frame's sensor tells too much.
+Estimate gain_of(const OwnMotion::Found& found) {
+  const Index last = found.values.size() - 1;
+  const double share = found.values[last];  // of what it tells
+  return {share / (1.0 - share), std::hypot(std::sqrt(found.covariance(last, last)), kGain)};
+}
+
+bool is_beyond(double sigmas, const Estimate& e) { return std::abs(e.value) > sigmas * e.std; }
+
+}  // namespace
+
+bool shows_no_gain(const Config& config, const SourceOptions& source, const Explained& explained) {
+  if (!names_frame_gain(explained.explanation)) return false;
+  const auto motion = own_motion(config, source, explained);
+  if (!motion) return false;
+  const auto found = fit_with_gain(*motion, explained);
+  return found && apart(motion->document(), found->values) < kOtherLevel &&
+         !is_beyond(kNamedSigmas, gain_of(*found));
+}
+
+void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out) {
+  const auto motion = own_motion(config, source, out);
+  if (!motion) return;
+  const law::Document& document = motion->document();
+  auto found = fit_with_gain(*motion, out);
+  if (!found) return;
+  const double before_nmse = found->nmse_before;
+  const Estimate gain = gain_of(*found);
+  const bool named = names_frame_gain(out.explanation);
+  const bool is_gain = is_beyond(named ? kNamedSigmas : kUnnamedSigmas, gain);
+  if (!is_gain) {
+    const auto [rows, scale] = start_of(*motion, out);
+    found = motion->fit(found->values.head(rows.size()), scale);
+  }
+  if (!found || !(found->held_out_nmse < before_nmse)) return;
   const double level = apart(document, found->values);
   if (level > kOtherLevel) return;
   std::vector<std::pair<std::string_view, Estimate>> refined;
@@ -296,10 +366,14 @@ void refine_by_motion(const Config& config, const SourceOptions& source, Explain
     refined.emplace_back(figure.name, Estimate{value, std::hypot(by_motion, by_scale)});
   }
   for (const auto& [name, value] : refined) put(name, value, out.explanation);
+  if (named)
+    put(kFrameGain, gain, out.explanation);
+  else if (is_gain)
+    out.frame_gain = gain;
   out.notes.push_back(fmt::format(
       "Spring and what bends it are by the frame's own motion on its wheelsets: of its velocity's "
       "square they leave {:.3g}, held out, and the equations' figures {:.3g}.",
-      found->held_out_nmse, found->nmse_before));
+      found->held_out_nmse, before_nmse));
 }
 
 }  // namespace dampline::app

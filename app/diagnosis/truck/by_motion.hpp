@@ -15,4 +15,9 @@ namespace dampline::app {
 /// Only where every effect is a term of the law. Reads the record once more.
 void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out);
 
+/// Whether a gain of the frame's sensor that was named beside such a spring is none by the frame's
+/// own motion, where it is an unknown too: the gain made up for a stop at a wrong place.
+[[nodiscard]] bool shows_no_gain(const Config& config, const SourceOptions& source,
+                                 const Explained& explained);
+
 }  // namespace dampline::app

@@ -142,6 +142,10 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   out.circumstances = pass.run->circumstances();
   explain_pass(reading, pass, out);
   look_for_other(reading, pass, out);
+  if (options.refine && shows_no_gain(config, options.source, out)) {
+    out.needless.effect[static_cast<std::size_t>(effect::Effect::kGainError)] = true;
+    explain_pass(reading, pass, out);
+  }
   look_for_low_pass(reading, out);
   effect::name_nothing_impossible(out.explanation);
   if (options.refine) refine_by_motion(config, options.source, out);

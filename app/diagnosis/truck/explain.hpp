@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Explained : effect::Judgement {
   std::shared_ptr<const OtherTruck> other;
   double without_other_nmse{0.0};  ///< held-out error of the base without it
   Needless needless;
+  /// By which share the frame's sensor tells too much by its own motion, where no step has it.
+  std::optional<Estimate> frame_gain;
   std::vector<Validated> validation;
   Signature signature;  ///< of what the final model leaves; rms 0: the record was read only once
   Convergence convergence;         ///< of the final model; where the record was read again

@@ -167,6 +167,7 @@ Explanation found_in(const Explained& explained) {
   const effect::Conclusion conclusion = conclusion_of(explained);
   out.verdict = effect::name_of(conclusion);
   out.known = {e.floor_nmse > 0.0, is_unknown(conclusion), explained.withheld, !is_possible(e)};
+  out.known.frame_gain = explained.frame_gain;
   out.unknown = !explained.withheld && !explained.drifts && is_unknown(e.conclusion);
   out.base = base_of(explained);
   if (explained.other) out.steps.push_back(other_step(explained));
