@@ -82,10 +82,11 @@ void judge_data(const Explaining* explaining, const RunResult& result, Reasons& 
   if (explaining != nullptr && explaining->frame_gain)
     out.emplace_back(
         Trust::kDataFaulty,
-        fmt::format("By the frame's own motion its sensor tells {} too much, which the effects "
-                    "that were found hide: correct it, and explain anew.",
-                    words(100.0 * explaining->frame_gain->value,
-                          100.0 * explaining->frame_gain->std, "%")));
+        fmt::format("By the frame's own motion its sensor tells {} too {}, which the effects that "
+                    "were found hide: correct it, and explain anew.",
+                    words(std::abs(100.0 * explaining->frame_gain->value),
+                          100.0 * explaining->frame_gain->std, "%"),
+                    explaining->frame_gain->value < 0.0 ? "little" : "much"));
   if (result.magnitudes) judge_units(result, *result.magnitudes, out);
 }
 
