@@ -305,21 +305,23 @@ Moved best_form(const Moved& first, const std::vector<Form>& forms, std::vector<
 struct Excerpt {
   std::vector<law::Drive> drives;
   double ruled_out;
+  std::optional<law::Shot> best{};  ///< over it, as it is; once it was asked for
 };
 
 /// The model with another way in which friction falls with speed, moved over the whole; nothing
 /// where a part of the records rules it out, or it does not move.
 std::optional<Moved> in_other_form(const Moved& best, std::size_t column, Kind shape,
-                                   const Scale& scale, const std::vector<Excerpt>& excerpts,
+                                   const Scale& scale, std::vector<Excerpt>& excerpts,
                                    const std::vector<law::Drive>& drives) {
   Moved other = best;
   other.model.columns[column].kind = shape;
-  for (const Excerpt& part : excerpts) {
+  for (Excerpt& part : excerpts) {
     other = move_quickly(other.model, other.joint, other.shot.unknowns, scale, part.drives);
     if (!other.shot.ok) return {};
-    const law::Shot as_is = law::follow(law_at(best.model, best.joint, scale), best.shot.unknowns,
-                                        part.drives, other.shot.segment_s);
-    if (as_is.ok && as_likely(other.shot, as_is, part.drives) < part.ruled_out) return {};
+    if (!part.best)
+      part.best = law::follow(law_at(best.model, best.joint, scale), best.shot.unknowns,
+                              part.drives, other.shot.segment_s);
+    if (part.best->ok && as_likely(other.shot, *part.best, part.drives) < part.ruled_out) return {};
   }
   other = move(other.model, other.joint, other.shot.unknowns, scale, drives);
   if (!other.shot.ok) return {};
@@ -336,8 +338,8 @@ Moved surest_of_fading(const Moved& best, const Scale& scale, const std::vector<
                                    [](const Regressor& c) { return law::is_fading(c.kind); });
   if (fading == best.model.columns.end() || best.shot.nmse < kExact) return best;
   const auto column = static_cast<std::size_t>(fading - best.model.columns.begin());
-  const std::vector<Excerpt> excerpts{{drives_of(records, kShortly), kRuledOut},
-                                      {drives_of(records, kScreened), kRuledOutLonger}};
+  std::vector<Excerpt> excerpts{{drives_of(records, kShortly), kRuledOut},
+                                {drives_of(records, kScreened), kRuledOutLonger}};
   std::vector<Moved> all{best};
   double segment_s = best.shot.segment_s;
   for (const Kind shape : law::kFadingForms) {
