@@ -82,8 +82,8 @@ MatrixXd BlockFit::covariance(double freedom) const {
   return widen.asDiagonal() * out * widen.asDiagonal();
 }
 
-double BlockFit::held_out_squares() const {
-  double held_out = 0.0;
+VectorXd BlockFit::held_out_squares() const {
+  VectorXd held_out{static_cast<Eigen::Index>(blocks_.size())};
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     MatrixXd products = all_.products;
     VectorXd gradient = all_.gradient;
@@ -93,7 +93,7 @@ double BlockFit::held_out_squares() const {
     }
     const VectorXd by = -products.ldlt().solve(gradient);
     for (std::size_t b = fold; b < blocks_.size(); b += kFolds)
-      held_out +=
+      held_out[static_cast<Eigen::Index>(b)] =
           blocks_[b].squares + 2.0 * by.dot(blocks_[b].gradient) + by.dot(blocks_[b].products * by);
   }
   return held_out;

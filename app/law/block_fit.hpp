@@ -42,8 +42,8 @@ class BlockFit {
   /// From the scatter of the blocks, no less than white noise makes. `freedom`: samples less what
   /// was fitted.
   [[nodiscard]] Eigen::MatrixXd covariance(double freedom) const;
-  /// What every fifth block keeps by the unknowns that the others choose.
-  [[nodiscard]] double held_out_squares() const;
+  /// What each block keeps by the unknowns that four fifths of the others choose.
+  [[nodiscard]] Eigen::VectorXd held_out_squares() const;
 
  private:
   std::vector<Sums> blocks_;

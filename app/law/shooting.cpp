@@ -410,7 +410,7 @@ Shot Shooting::judge(const VectorXd& unknowns, double squares, Reach reach) {
     const VectorXd by = fit.solve(gradient);
     out.covariance += by * by.transpose();
   }
-  out.held_out_nmse = fit.held_out_squares() / variance_m2_;
+  out.held_out_nmse = fit.held_out_squares().sum() / variance_m2_;
   out.density = density_of(parts);
   return out;
 }

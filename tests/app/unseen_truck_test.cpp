@@ -89,6 +89,29 @@ TEST(UnseenTruckNightly, WithAStopHasNoGainOfItsFrame) {
   for (const auto& [name, truth] : s.truck.truths) expect_within(s, name, truth);
 }
 
+// A spring that relaxes explains more at first, and the surrogate shows it as well: it hid the
+// friction that rises with the deflection, with a level 25 % high at 19 deviations.
+TEST(UnseenTruckNightly, ThatHardlyMovesHasItsFriction) {
+  const Seen s = seen(1063, 420.0);
+  EXPECT_EQ(s.names(), "progressive_friction ");
+  expect_within(s, "coulomb", s.truck.truck.coulomb_n);
+}
+
+// What was hidden like this is no channel: a frame that tells 0.7 % too little would explain more.
+TEST(UnseenTruckNightly, HasNoGainBehindWhatTheSurrogateShows) {
+  const Seen s = seen(1001, 420.0);
+  EXPECT_STREQ(s.truck.truck.name, "asymmetric_coulomb");
+  EXPECT_EQ(s.names(), "");
+}
+
+// A spring that hardens explains the equations as well, with a spring 27 % too soft.
+TEST(UnseenTruckNightly, WithAStopHasNoSpringThatHardens) {
+  const Seen s = seen(5038, 418.0);
+  EXPECT_EQ(s.names(), "bump_stop ");
+  EXPECT_EQ(s.found.result.trust, Trust::kTrusted);
+  for (const auto& [name, truth] : s.truck.truths) expect_within(s, name, truth);
+}
+
 // By its own motion; of 24 sound trucks whose spring is not straight 0.63 % at most.
 TEST(UnseenTruckNightly, WithAStopTellsTheGainOfItsFrame) {
   const Seen low = seen(6029, 300.0, 0.97);

@@ -62,11 +62,11 @@ Message message(const Message& attributes, unsigned flags = IFF_UP,
 }
 
 /// can0 of a controller: 250 kbit/s, error-passive.
-Message controller(std::uint32_t restart_ms) {
+Message controller(std::uint32_t restart_ms, std::uint32_t state = CAN_STATE_ERROR_PASSIVE) {
   can_bittiming timing{};
   timing.bitrate = 250'000;
   const Message data = attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
-                       attribute(IFLA_CAN_STATE, bytes_of(std::uint32_t{2})) +
+                       attribute(IFLA_CAN_STATE, bytes_of(state)) +
                        attribute(IFLA_CAN_RESTART_MS, bytes_of(restart_ms));
   return message(attribute(IFLA_IFNAME, bytes_of("can0")) +
                  attribute(IFLA_MTU, bytes_of(std::uint32_t{16})) +
@@ -92,6 +92,11 @@ TEST(CanLink, ReadsAController) {
   EXPECT_EQ(link.bitrate, 250'000U);
   EXPECT_EQ(link.restart_ms, 0U);
   EXPECT_EQ(link.state, CanState::kErrorPassive);
+}
+
+TEST(CanLink, KnowsNoStateThatTheKernelDoesNotName) {
+  EXPECT_EQ(parse_links(controller(0, CAN_STATE_MAX - 1)).at(0).state, CanState::kSleeping);
+  EXPECT_EQ(parse_links(controller(0, CAN_STATE_MAX)).at(0).state, LinkState{}.state);
 }
 
 TEST(CanLink, WarnsWhereBusOffWouldBeForEver) {
@@ -131,7 +136,11 @@ TEST(CanLink, SurvivesEveryTruncationAndEveryByte) {
 }
 
 TEST(CanLink, AsksTheKernelAndNamesAnInterfaceThatIsNotThere) {
-  ASSERT_TRUE(read_links().ok()) << read_links().error_text();
+  const auto links = read_links();
+  ASSERT_TRUE(links.ok()) << links.error_text();
+  const bool none = links.value().empty();
+  EXPECT_EQ(links_text() == "there is no CAN interface", none) << links_text();
+  EXPECT_EQ(links_text().starts_with("CAN interfaces are: "), !none) << links_text();
   const auto link = read_link("can_none");
   ASSERT_FALSE(link.ok());
   EXPECT_THAT(link.error_text(), HasSubstr("can_none: there is no such interface; "));

@@ -123,6 +123,7 @@ TEST(ErrorFrame, TellsEachClass) {
     EXPECT_EQ(told.events[0].time_ns, 77);
     if (classes == CAN_ERR_BUSOFF) {
       EXPECT_EQ(told.events[0].kind, EventKind::kBusOff);
+      EXPECT_EQ(told.events[0].value, 0);
     } else if (classes == CAN_ERR_RESTARTED) {
       EXPECT_EQ(told.events[0].kind, EventKind::kBusRestarted);
     } else {

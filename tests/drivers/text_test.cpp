@@ -9,12 +9,25 @@
 
 #include "drivers/text/cursor.hpp"
 #include "drivers/text/kind.hpp"
+#include "drivers/text/line_reader.hpp"
 #include "drivers/text/quote.hpp"
 #include "drivers/text/whole_file.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 namespace dampline::drivers {
 namespace {
+
+TEST(LineReader, ShowsWhatFollowsTheLastLine) {
+  const test::TemporaryFile file{"one\ntwo\nthree"};
+  auto reader = LineReader::open(file.path());
+  ASSERT_TRUE(reader.ok());
+  EXPECT_EQ(reader.value().peek(), "one\ntwo\nthree");
+  std::string_view line;
+  ASSERT_EQ(reader.value().next(line), LineReader::Status::kLine);
+  EXPECT_EQ(reader.value().peek(), "two\nthree");
+  ASSERT_EQ(reader.value().next(line), LineReader::Status::kLine);
+  EXPECT_EQ(line, "two");
+}
 
 TEST(Cursor, TakesWordsBetweenBlanks) {
   std::string_view rest = "  ab\t c ";
@@ -104,6 +117,8 @@ TEST(ListNames, CutsLongNamesAndManyOfThem) {
   EXPECT_EQ(list_names({"a", "b", "c"}), "a, b, c");
   EXPECT_EQ(list_names({"a", "b", "c"}, 2), "a, b and 1 more");
   EXPECT_EQ(list_names({"a", "b", "c"}, 3), "a, b, c");
+  EXPECT_FALSE(list_names(std::vector<std::string>(24, "a")).ends_with(" more"));
+  EXPECT_TRUE(list_names(std::vector<std::string>(25, "a")).ends_with(" and 1 more"));
   EXPECT_EQ(list_names({std::string(61, 'x'), std::string(60, 'y')}),
             fmt::format("{:x<60}..., {:y<60}", "", ""));
 }

@@ -83,6 +83,21 @@ TEST_F(SocketCanOutage, LooksForARemovedInterfaceFiveTimesASecondOnly) {
   EXPECT_LE(looks.calls(), 6U);
 }
 
+TEST_F(SocketCanOutage, LooksAtOnceForAnInterfaceThatGoesAgain) {
+  kernel_.remove("can0");
+  read_all();
+  kernel_.add("can0");
+  clock_.advance(kLookNs);
+  read_all();
+  EXPECT_EQ(kernel_.sockets_open(), 1U);
+  kernel_.remove("can0");
+  kernel_.add("can0");
+  read_all();
+  read_all();
+  receive(0x310, 7);
+  EXPECT_EQ(read_all().at(0).data[0], 7) << "no time has passed";
+}
+
 TEST_F(SocketCanOutage, NoticesAnInterfaceThatWasReplacedWhileItWasDown) {
   kernel_.down("can0");
   read_all();

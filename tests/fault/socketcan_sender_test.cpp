@@ -101,6 +101,20 @@ TEST_F(CanSending, OpensANewSocketWhenARemovedInterfaceIsBack) {
   EXPECT_EQ(sender_->health().reopened, 1U);
 }
 
+TEST_F(CanSending, SaysThatTheInterfaceIsGoneWhateverFailedLast) {
+  kernel_.remove("can0");
+  EXPECT_EQ(sender_->send(numbered(1)), 0U);
+  errno = EPERM;
+  EXPECT_EQ(sender_->send(numbered(1)), 0U);
+  EXPECT_EQ(sender_->last_errno(), ENODEV);
+}
+
+TEST_F(CanSending, BearsInterruptionsButNotForEver) {
+  const ArmedFault fault{{.call = Call::kSendmmsg, .error = EINTR, .for_ever = true}};
+  EXPECT_EQ(sender_->send(numbered(1)), 0U);
+  EXPECT_EQ(fault.calls(), 1000U);
+}
+
 TEST_F(CanSending, AccountsForEveryFrameWhateverErrorEachCallGives) {
   for (int error = 1; error < 134; ++error) {
     for (const bool for_ever : {false, true}) {

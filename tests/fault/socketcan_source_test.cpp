@@ -131,6 +131,14 @@ TEST_F(SocketCanSource, TellsErrorFrames) {
   EXPECT_TRUE(health.link_up);
 }
 
+TEST_F(SocketCanSource, TellsAStepOfTheWallClockOnASilentBus) {
+  open();
+  read_all();
+  clock_.step_wall(3'600'000 * kMs);
+  EXPECT_TRUE(read_all().empty());
+  EXPECT_THAT(event_kinds(), ElementsAre(EventKind::kClockStep));
+}
+
 TEST_F(SocketCanSource, TellsAStepOfTheWallClockBehindTheFramesBeforeIt) {
   kernel_.set_room(10);
   open();

@@ -207,6 +207,27 @@ TEST(SamplePlacer, PutsTonesWhereTheyBelong) {
   }
 }
 
+TEST(SamplePlacer, PutsSmallTonesWhereTheyBelong) {
+  auto record = UnevenTones{.off_s = 3e-4}.record();
+  for (Sample& sample : record)
+    for (double& a : sample.accel_mps2) a *= 1e-4;
+  const Placed out = place(record);
+  for (const double off_s : out.figures.off_s) EXPECT_NEAR(off_s / 3e-4, 1.0, 0.05);
+}
+
+// Stamps that leap by two ticks are another tick's until 32 samples in a row have shown that they
+// stay there; the next one begins a new line, and those after it are put in their places again.
+TEST(SamplePlacer, FollowsStampsThatLeap) {
+  constexpr std::size_t kLeap = 4000;
+  auto record = UnevenTones{.off_s = 3e-4}.record();
+  for (std::size_t i = kLeap; i < record.size(); ++i) record[i].wheelset_after_us[0] += 6667;
+  const Placed out = place(record);
+  for (std::size_t i = kLeap - 20; i < kLeap + 80; ++i) {
+    const bool stays = i >= kLeap && i <= kLeap + 32;
+    EXPECT_EQ(out.placed[i].accel_mps2[1] == out.taken[i].accel_mps2[1], stays) << i - kLeap;
+  }
+}
+
 TEST(SamplePlacer, LeavesTonesWhoseStampsTellNothing) {
   const Placed out = place(UnevenTones{.off_s = 3e-4, .is_stamped = false}.record());
   for (std::size_t i = 0; i < out.taken.size(); ++i)

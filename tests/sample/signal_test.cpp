@@ -132,6 +132,7 @@ TEST(Extract, ScalesAndOffsets) {
   EXPECT_DOUBLE_EQ(extract_physical(signal, frame).value(), 0.95);
   EXPECT_DOUBLE_EQ(extract_physical(layout(0, 64, ByteOrder::kIntel), frame).value(),
                    18446744073709551615.0);
+  EXPECT_EQ(extract_raw(layout(0, 64, ByteOrder::kIntel), frame).value(), -1) << "it wraps";
 }
 
 TEST(Extract, RefusesLayoutsThatCannotBe) {

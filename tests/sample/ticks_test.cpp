@@ -172,6 +172,15 @@ TEST(CounterSequence, FourFramesThatContinueEachOtherAreARestartedNode) {
   EXPECT_EQ(sequence.newest(), 114);
 }
 
+TEST(CounterSequence, ARestartedNodeComesAfterTheNewestWhateverItsTimes) {
+  CounterSequence sequence = counted(16);
+  for (std::uint64_t i = 0; i < 3; ++i)
+    static_cast<void>(sequence.place(5000 + i, at(97.0 + static_cast<double>(i))));
+  const Placement placed = sequence.place(5003, at(100.0));
+  EXPECT_EQ(placed.place, Place::kRealigned);
+  EXPECT_EQ(placed.tick, 101);
+}
+
 TEST(CounterSequence, FramesThatDoNotContinueEachOtherAreNone) {
   CounterSequence sequence = counted(16);
   for (int i = 0; i < 20; ++i) {

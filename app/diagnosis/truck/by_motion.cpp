@@ -42,6 +42,7 @@ constexpr double kGain = 0.004;         // the core's integral is an integrator 
 constexpr double kNamedSigmas = 2.0;    // a gain that the equations name is one
 constexpr double kUnnamedSigmas = 3.0;  // one is told that they do not name
 constexpr std::string_view kFrameGain = "gain_error_frame";
+constexpr double kRivalShare = 0.8;   // of the gain: a spring that has it may be the right one
 constexpr double kOffsetShare = 0.1;  // of the friction: first steps of the constant force
 
 bool is_elastic(Effect e) {
@@ -136,7 +137,7 @@ class OwnMotion {
     VectorXd values;
     MatrixXd covariance;
     double nmse_before{0.0};
-    double held_out_nmse{0.0};
+    VectorXd held_out;  ///< share of the motion's squares, by blocks
   };
   /// Nothing where the law runs away, or the motion does not tell its unknowns apart.
   [[nodiscard]] std::optional<Found> fit(VectorXd values, const VectorXd& scale) const;
@@ -232,7 +233,7 @@ std::optional<OwnMotion::Found> OwnMotion::fit(VectorXd values, const VectorXd& 
   if (!fit.ok()) return std::nullopt;
   out.values = values;
   out.covariance = fit.covariance(static_cast<double>(rest->size() - values.size()));
-  out.held_out_nmse = fit.held_out_squares() / motion_squares();
+  out.held_out = fit.held_out_squares() / motion_squares();
   return out;
 }
 
@@ -328,6 +329,19 @@ bool is_beyond(double sigmas, const Estimate& e) { return std::abs(e.value) > si
 
 }  // namespace
 
+std::optional<Effect> spring_with_rival(const effect::Explanation& e) {
+  for (std::size_t i = 0; i < e.step_count; ++i) {
+    const effect::Step& step = e.step[i];
+    if (!is_elastic(step.chosen.effect)) continue;
+    const double gain = step.held_out_nmse_before - step.held_out_nmse_after;
+    for (std::size_t r = 0; r < step.runner_up_count; ++r)
+      if (is_elastic(step.other[r].effect) &&
+          step.held_out_nmse_before - step.runner_up[r].held_out_nmse > kRivalShare * gain)
+        return step.chosen.effect;
+  }
+  return std::nullopt;
+}
+
 bool shows_no_gain(const Config& config, const SourceOptions& source, const Explained& explained) {
   if (!names_frame_gain(explained.explanation)) return false;
   const auto motion = own_motion(config, source, explained);
@@ -337,12 +351,12 @@ bool shows_no_gain(const Config& config, const SourceOptions& source, const Expl
          !is_beyond(kNamedSigmas, gain_of(*found));
 }
 
-void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out) {
+VectorXd refine_by_motion(const Config& config, const SourceOptions& source, Explained& out) {
   const auto motion = own_motion(config, source, out);
-  if (!motion) return;
+  if (!motion) return {};
   const law::Document& document = motion->document();
   auto found = fit_with_gain(*motion, out);
-  if (!found) return;
+  if (!found) return {};
   const double before_nmse = found->nmse_before;
   const Estimate gain = gain_of(*found);
   const bool named = names_frame_gain(out.explanation);
@@ -351,16 +365,16 @@ void refine_by_motion(const Config& config, const SourceOptions& source, Explain
     const auto [rows, scale] = start_of(*motion, out);
     found = motion->fit(found->values.head(rows.size()), scale);
   }
-  if (!found || !(found->held_out_nmse < before_nmse)) return;
+  if (!found || !(found->held_out.sum() < before_nmse)) return {};
   const double level = apart(document, found->values);
-  if (level > kOtherLevel) return;
+  if (level > kOtherLevel) return {};
   std::vector<std::pair<std::string_view, Estimate>> refined;
   for (std::size_t i = 0; i < document.unknowns.size(); ++i) {
     const Figure figure = figure_of(document, document.unknowns[i]);
     if (figure.name.empty()) continue;
     const auto j = static_cast<Index>(i);
     const double value = figure.times * found->values[j];
-    if (figure.name.starts_with("bump_stop") && !(value > 0.0)) return;
+    if (figure.name.starts_with("bump_stop") && !(value > 0.0)) return {};
     const double by_scale = figure.power * std::hypot(level, kGain) * value;
     const double by_motion = figure.times * std::sqrt(found->covariance(j, j));
     refined.emplace_back(figure.name, Estimate{value, std::hypot(by_motion, by_scale)});
@@ -373,7 +387,8 @@ void refine_by_motion(const Config& config, const SourceOptions& source, Explain
   out.notes.push_back(fmt::format(
       "Spring and what bends it are by the frame's own motion on its wheelsets: of its velocity's "
       "square they leave {:.3g}, held out, and the equations' figures {:.3g}.",
-      found->held_out_nmse, before_nmse));
+      found->held_out.sum(), before_nmse));
+  return found->held_out;
 }
 
 }  // namespace dampline::app

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <Eigen/Core>
+#include <optional>
+
 #include "app/diagnosis/truck/explain.hpp"
 
 namespace dampline::app {
@@ -12,8 +15,14 @@ namespace dampline::app {
 /// motion's figures where these leave less, held out. The level of friction stays: vibration above
 /// the sensors' low pass eases the friction of the truck and not that of the law, whose level is
 /// therefore low; by as much the other figures may be off, and that is in their deviations.
-/// Only where every effect is a term of the law. Reads the record once more.
-void refine_by_motion(const Config& config, const SourceOptions& source, Explained& out);
+/// Only where every effect is a term of the law. Reads the record once more. Returns what is left
+/// of the squares of the velocity in each block of 5 s, held out, as shares of all; nothing where
+/// the figures stay.
+Eigen::VectorXd refine_by_motion(const Config& config, const SourceOptions& source, Explained& out);
+
+/// Of a spring that is not straight: what was chosen where the equations leave another one of that
+/// kind almost as well.
+[[nodiscard]] std::optional<effect::Effect> spring_with_rival(const effect::Explanation& e);
 
 /// Whether a gain of the frame's sensor that was named beside such a spring is none by the frame's
 /// own motion, where it is an unknown too: the gain made up for a stop at a wrong place.

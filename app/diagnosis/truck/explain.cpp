@@ -23,6 +23,8 @@ namespace dampline::app {
 
 namespace {
 
+constexpr double kByMotionT = 2.0;  // of another spring: it leaves less of the frame's motion
+
 /// Predicts a record that took no part, and appends it to prediction.csv as the `number`-th.
 Validated validate(const Config& config, const SourceOptions& source, std::uint32_t number,
                    Explained& out, effect::Explainer& explainer) {
@@ -65,7 +67,7 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
                       fmt::join(out.identified.trust_reasons, " "))};
     out.lateness = {};
     look_closer(config, options, pass, noise, *explainer, out);
-    look_again(config, options, pass, noise, *explainer, out, reading.search);
+    if (!look_again(config, options, pass, noise, *explainer, out, reading.search)) continue;
     hold_back(out);
     if (!take_needless(out.explanation, out.needless)) return;
   }
@@ -83,6 +85,33 @@ void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
                                  {{}, {}, reading.options.show_progress, {}, with.other.get()});
   explain_pass(reading, pass, with);
   if (other_leaves_less(with, out)) out = std::move(with);
+}
+
+/// Mean over its deviation, of what blocks gain.
+double t_of(const Eigen::ArrayXd& gain) {
+  const auto n = static_cast<double>(gain.size());
+  return gain.mean() / std::sqrt((gain - gain.mean()).square().sum() / (n * (n - 1.0)));
+}
+
+/// A stop and a spring that hardens leave the equations almost alike, since these see the
+/// deflection without what is slow; the frame's own motion has that too, and tells them apart.
+void refine(Reading& reading, const TruckPass& pass, Explained& out) {
+  const Config& config = reading.config;
+  const SourceOptions& source = reading.options.source;
+  const auto chosen = spring_with_rival(out.explanation);
+  Explained rival = out;
+  const Eigen::VectorXd left = refine_by_motion(config, source, out);
+  if (left.size() == 0 || !chosen) return;
+  rival.needless.effect[static_cast<std::size_t>(*chosen)] = true;
+  explain_pass(reading, pass, rival);
+  effect::name_nothing_impossible(rival.explanation);
+  const Eigen::VectorXd by_rival = refine_by_motion(config, source, rival);
+  if (by_rival.size() != left.size() || !(t_of(left - by_rival) > kByMotionT)) return;
+  rival.notes.push_back(
+      fmt::format("{} would explain the equations as well; moved by the "
+                  "wheelsets it leaves {:.3g} of the velocity's square.",
+                  effect::name_of(*chosen), left.sum()));
+  out = std::move(rival);
 }
 
 /// Sensors whose low pass is not as declared: that explains more than effects do.
@@ -148,7 +177,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   }
   look_for_low_pass(reading, out);
   effect::name_nothing_impossible(out.explanation);
-  if (options.refine) refine_by_motion(config, options.source, out);
+  if (options.refine) refine(reading, pass, out);
   excuse_rate(config, out);
   take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;

@@ -64,10 +64,10 @@ bool can_read_again(const std::string& path) {
          std::filesystem::is_directory(path, ignored);
 }
 
-void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
+bool look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
                 const FrameNoise& noise, effect::Explainer& explainer, Explained& out,
                 OtherTruckSearch& search) {
-  if (!can_read_again(options.source.path)) return;
+  if (!can_read_again(options.source.path)) return true;
   EstimatorConfig core = estimator_config(config);
   core.screen = first.run->config().estimator.screen;
   const RecordNoise seen =
@@ -76,12 +76,15 @@ void look_again(const Config& config, const ExplainOptions& options, const Truck
   surrogates->begin(core, surrogate_config(core, out.explanation, seen), out.explanation);
   read_again(config, options, core, first, surrogates.get(), search, out);
   surrogates->finish();
-  const std::size_t steps = out.explanation.step_count;
+  const effect::Explanation before = out.explanation;
   surrogates->hold_against(explainer, 0.0, out);
-  // A surrogate that shows the same effect has taken it back: what is left is the base's.
-  if (out.explanation.step_count == steps) return;
-  out.lateness = {};
-  read_again(config, options, core, first, nullptr, search, out);
+  if (out.explanation.step_count == before.step_count) return true;
+  // What it hid is of the law: channels and modes fit many small things.
+  const auto shown = static_cast<std::size_t>(before.step[0].chosen.effect);
+  for (std::size_t i = 0; i < effect::kEffects; ++i)
+    if (i == shown || !effect::is_of_law(static_cast<effect::Effect>(i)))
+      out.needless.effect[i] = true;
+  return false;
 }
 
 namespace {

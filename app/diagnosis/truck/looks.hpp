@@ -19,10 +19,12 @@ void look_closer(const Config& config, const ExplainOptions& options, const Truc
 /// Reads a record once more, now that it is explained: what is left, sample by sample, and the
 /// surrogate, which tells how much of that no effect can take away. Fills the explanation's floor
 /// and conclusion, evidence and signature. `first`: the pass that was explained; `noise`: of the
-/// same samples; `search`: sees what is left, too.
-void look_again(const Config& config, const ExplainOptions& options, const TruckPass& first,
-                const FrameNoise& noise, effect::Explainer& explainer, Explained& out,
-                OtherTruckSearch& search);
+/// same samples; `search`: sees what is left, too. False: the surrogate shows the first effect as
+/// well, which is needless then, and the record is to be explained anew without it.
+[[nodiscard]] bool look_again(const Config& config, const ExplainOptions& options,
+                              const TruckPass& first, const FrameNoise& noise,
+                              effect::Explainer& explainer, Explained& out,
+                              OtherTruckSearch& search);
 
 /// Whether a source can be read twice.
 [[nodiscard]] bool can_read_again(const std::string& path);
