@@ -94,7 +94,7 @@ void LiveFloor::begin(const Law& law, const effect::Explanation& explanation) {
     surrogates_->take(kept_[(oldest_ + i) % kept_.size()]);
 }
 
-void LiveFloor::hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
+bool LiveFloor::hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
                              effect::Explainer& explainer, Explained& out) {
   const effect::Explanation& e = out.explanation;
   const effect::SurrogateConfig declared =
@@ -102,7 +102,7 @@ void LiveFloor::hold_against(const effect::GramStore& sums, const GuardedNoise& 
   const Law law{declared, is_physical(declared) ? with_found(declared, e) : declared};
   if (!any_law_ || !are_alike(law, law_)) begin(law, e);
   surrogates_->gather();
-  surrogates_->hold_against(explainer, sums.rows(), out);
+  return surrogates_->hold_against(explainer, sums.rows(), out);
 }
 
 }  // namespace dampline::app

@@ -33,9 +33,9 @@ class LiveFloor {
   void follow(const Sample& sample);
   /// The motion that is kept, the oldest first; a copy.
   [[nodiscard]] std::vector<Sample> kept() const;
-  /// Floor and conclusion of an explanation of these sums.
-  void hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
-                    effect::Explainer& explainer, Explained& out);
+  /// Floor and conclusion of an explanation of these sums. False: as Surrogates::hold_against().
+  [[nodiscard]] bool hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
+                                  effect::Explainer& explainer, Explained& out);
   /// Whatever law there was: the next one begins anew, so that it follows from the samples alone.
   void forget() noexcept { any_law_ = false; }
 

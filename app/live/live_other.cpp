@@ -15,7 +15,7 @@ bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& flo
   while (true) {
     effect::judge(sums, explainer_config(known.config, out), out.circumstances, explainer, out);
     if (out.explanation.conclusion == effect::Conclusion::kNotReady) return false;
-    floor.hold_against(sums.store, known.guarded, explainer, out);
+    if (!floor.hold_against(sums.store, known.guarded, explainer, out)) continue;
     hold_back(out);
     if (!take_needless(out.explanation, out.needless)) break;
   }

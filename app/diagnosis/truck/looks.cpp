@@ -76,15 +76,7 @@ bool look_again(const Config& config, const ExplainOptions& options, const Truck
   surrogates->begin(core, surrogate_config(core, out.explanation, seen), out.explanation);
   read_again(config, options, core, first, surrogates.get(), search, out);
   surrogates->finish();
-  const effect::Explanation before = out.explanation;
-  surrogates->hold_against(explainer, 0.0, out);
-  if (out.explanation.step_count == before.step_count) return true;
-  // What it hid is of the law: channels and modes fit many small things.
-  const auto shown = static_cast<std::size_t>(before.step[0].chosen.effect);
-  for (std::size_t i = 0; i < effect::kEffects; ++i)
-    if (i == shown || !effect::is_of_law(static_cast<effect::Effect>(i)))
-      out.needless.effect[i] = true;
-  return false;
+  return surrogates->hold_against(explainer, 0.0, out);
 }
 
 namespace {

@@ -155,6 +155,15 @@ void explains_nothing(effect::Explanation& e) {
       e.step_count > 0 ? effect::Conclusion::kPartlyExplained : effect::Conclusion::kUnexplained;
 }
 
+/// A surrogate shows an effect that is none. What it hid is of the law: channels and modes fit many
+/// small things.
+void take_shown(effect::Effect shown, Needless& needless) {
+  for (std::size_t i = 0; i < effect::kEffects; ++i) {
+    const auto each = static_cast<effect::Effect>(i);
+    if (each == shown || !effect::is_of_law(each)) needless.effect[i] = true;
+  }
+}
+
 }  // namespace
 
 void Surrogates::begin(const EstimatorConfig& core, const effect::SurrogateConfig& declared,
@@ -168,10 +177,14 @@ void Surrogates::begin(const EstimatorConfig& core, const effect::SurrogateConfi
   passes_[1].emplace(core, second, e.grids);
 }
 
-void Surrogates::hold_against(effect::Explainer& explainer, double rows, Explained& out) const {
+bool Surrogates::hold_against(effect::Explainer& explainer, double rows, Explained& out) const {
   effect::Explanation& e = out.explanation;
-  if (!passes_[0]) return explains_nothing(e);
+  if (!passes_[0]) {
+    explains_nothing(e);
+    return true;
+  }
   const std::size_t steps = e.step_count;
+  const effect::Effect first_effect = e.step[0].chosen.effect;
   const auto conclusion = e.conclusion;
   const effect::Diagnosis& first = passes_[0]->diagnosis();
   const effect::Diagnosis* const second = &passes_[1]->diagnosis();
@@ -181,6 +194,9 @@ void Surrogates::hold_against(effect::Explainer& explainer, double rows, Explain
   const bool judged = explainer.apply_floor(surrogates, out.identified.faults.impacts, e);
   if (!judged && steps > 0) explains_nothing(e);
   if (out.withheld || out.drifts) e.conclusion = conclusion;
+  if (e.step_count == steps) return true;
+  take_shown(first_effect, out.needless);
+  return false;
 }
 
 }  // namespace dampline::app

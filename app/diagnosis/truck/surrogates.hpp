@@ -93,8 +93,9 @@ class Surrogates {
   }
   /// How much no effect can take away of what is left: fills floor and conclusion.
   /// `rows`: of the record that was explained, where the surrogates have seen only some of it; 0:
-  /// they have seen all of it. Precondition: finish() or gather().
-  void hold_against(effect::Explainer& explainer, double rows, Explained& out) const;
+  /// they have seen all of it. False: they show the first effect as well, which is needless then;
+  /// explain anew without it. Precondition: finish() or gather().
+  [[nodiscard]] bool hold_against(effect::Explainer& explainer, double rows, Explained& out) const;
 
  private:
   std::array<std::optional<SurrogatePass>, 2> passes_;
