@@ -111,6 +111,11 @@ TEST(RigIdentifier, ExcludesAndCountsGapsAndValuesThatAreNoNumber) {
   EXPECT_EQ(snapshot.counts.repeated, 1U);
   EXPECT_EQ(snapshot.counts.gaps, 2U);  // the erased stretch, and the repeated tick's own place
   EXPECT_EQ(snapshot.counts.lost, 301U);
+  rig::Sample next = record.back();
+  ++next.tick;
+  EXPECT_EQ(identifier->update(next), rig::Status::kUsed);
+  next.tick += 2;
+  EXPECT_EQ(identifier->update(next), rig::Status::kGap);
   RigRun run;
   run.snapshot = snapshot;
   expect_branches(run, 1.0);

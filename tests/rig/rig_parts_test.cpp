@@ -321,7 +321,9 @@ TEST(RigSurvey, MeasuresAMotionOfAFewSamples) {
   }
   EXPECT_NEAR(survey.motion_frequency_hz(), 95.49, 0.06 * 95.49);  // by the longest span
   EXPECT_NEAR(survey.deflection_noise_m(), 1e-6, 0.3e-6);
-  EXPECT_TRUE(survey.suggest({}).value().velocity_sharp);
+  const rig::Config out = survey.suggest({}).value();
+  EXPECT_TRUE(out.velocity_sharp);
+  EXPECT_EQ(out.velocity_half_width, rig::DerivativeWindow::sharp(1e-3).half_width());
 }
 
 TEST(RigDerivativeWindow, IsExactForSixthPowersWhereItIsSharp) {
@@ -339,6 +341,11 @@ TEST(RigSurvey, IsNotReadyWithoutMotion) {
   rig::Sample sample;
   for (sample.tick = 0; sample.tick < 1000; ++sample.tick) survey.update(sample);
   EXPECT_EQ(survey.suggest({}).error(), Errc::kNotReady);
+  for (sample.tick = 2000; sample.tick < 4000; sample.tick += 2) {
+    sample.deflection_m = 0.01 * std::sin(0.01 * static_cast<double>(sample.tick));
+    survey.update(sample);
+  }
+  EXPECT_EQ(survey.suggest({}).error(), Errc::kNotReady) << "no two samples follow each other";
 }
 
 TEST(RigIdentifier, FitsInHalfAMebibyte) {

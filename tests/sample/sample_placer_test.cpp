@@ -210,7 +210,7 @@ TEST(SamplePlacer, PutsTonesWhereTheyBelong) {
 TEST(SamplePlacer, PutsSmallTonesWhereTheyBelong) {
   auto record = UnevenTones{.off_s = 3e-4}.record();
   for (Sample& sample : record)
-    for (double& a : sample.accel_mps2) a *= 1e-4;
+    for (double& a : sample.accel_mps2) a *= 1e-8;
   const Placed out = place(record);
   for (const double off_s : out.figures.off_s) EXPECT_NEAR(off_s / 3e-4, 1.0, 0.05);
 }
