@@ -31,6 +31,7 @@ TEST_P(BaselineOf, SaysItsDelayAndItsFirstValue) {
     double out = 0.0;
     EXPECT_EQ(baseline.update(0.0, out), n >= baseline.first() + baseline.delay()) << n;
   }
+  EXPECT_EQ(baseline.first(), (2 + 8 + 1) * GetParam()) << "two boxes, eight taps, the spline";
 }
 
 /// Fast parts pass: an alternating sign comes out as it went in, delay() samples late.

@@ -36,6 +36,7 @@ std::vector<Sample> tones(double hz) {
 TEST(Decimator, TakesWholeFactorsAboveFourHundredHertz) {
   EXPECT_EQ(decimation(300.0), 1);
   EXPECT_EQ(decimation(400.0), 1);
+  EXPECT_EQ(decimation(std::nextafter(400.0, 500.0)), 2);
   EXPECT_EQ(decimation(500.0), 2);
   EXPECT_EQ(decimation(kRecordHz), kFactor);
   EXPECT_EQ(decimation(10240.0), 26);
@@ -52,6 +53,23 @@ TEST(Decimator, KeepsSlowTonesWithTheirPhaseAndTheMean) {
         EXPECT_NEAR(sample.accel_mps2[c], truth.accel_mps2[c], 2.5e-3) << hz << " Hz";
     }
   }
+}
+
+// As its channels: one slow tone in all of them, by the longest filter there may be.
+TEST(Decimator, TakesExtraChannelsLikeTheOthers) {
+  Decimator<kFactor> decimator{kFactor};
+  int seen = 0;
+  for (Sample in : tones(20.0)) {
+    for (std::size_t e = 0; e < kExtras; ++e)
+      in.extra_mps2[e] = static_cast<float>((1.0 + static_cast<double>(e)) * in.accel_mps2[0]);
+    Sample out;
+    if (!decimator.take(in, out)) continue;
+    ++seen;
+    for (std::size_t e = 0; e < kExtras; ++e)
+      EXPECT_NEAR(out.extra_mps2[e], (1.0 + static_cast<double>(e)) * out.accel_mps2[0], 1e-5);
+    EXPECT_NEAR(out.accel_mps2[0], tone(out.tick * kFactor, 20.0).accel_mps2[0], 2.5e-3);
+  }
+  EXPECT_GT(seen, 400);
 }
 
 /// Modified Bessel function of order 0, by its series.

@@ -42,6 +42,16 @@ TEST(FractionalDelay, SetsALateChannelRightAndLeavesTheOthers) {
   }
 }
 
+// By whole samples there is nothing between them to guess.
+TEST(FractionalDelay, ByWholeSamplesIsExact) {
+  FractionalDelay alignment{{0.0, 2.0 / kTruckRateHz, 0.0}, kTruckRateHz};
+  for (std::int64_t tick = 0; tick < 100; ++tick) {
+    const auto out = alignment.next(sample_at(tick, 2.0 / kTruckRateHz));
+    if (!out) continue;
+    EXPECT_NEAR(out->accel_mps2[1], tones(static_cast<double>(out->tick) / kTruckRateHz), 1e-9);
+  }
+}
+
 TEST(FractionalDelay, SetsTwoLateChannelsRight) {
   FractionalDelay alignment{{0.0013, 0.0, -0.0022}, kTruckRateHz};
   for (std::int64_t tick = 0; tick < 200; ++tick) {
