@@ -71,14 +71,16 @@ TEST(JudgementDelay, PassesSoundSamplesOnAsTheyAre) {
 TEST(JudgementDelay, GivesOneSampleForEachOneWhateverTheTicks) {
   std::vector<Sample> samples = record_of(60.0, {});
   samples.erase(samples.begin() + 9000, samples.begin() + 15000);
-  const auto guard = std::make_unique<Guard>(GuardConfig{});
-  const auto held = std::make_unique<JudgementDelay>(600);
-  Sample due;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    guard->update(samples[i]);
-    ASSERT_EQ(held->push(samples[i], *guard, due), i >= 600);
-    if (i >= 600) {
-      ASSERT_EQ(due.tick, samples[i - 600].tick);
+  for (const std::size_t wait : {std::size_t{1}, std::size_t{600}}) {
+    const auto guard = std::make_unique<Guard>(GuardConfig{});
+    const auto held = std::make_unique<JudgementDelay>(wait);
+    Sample due;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      guard->update(samples[i]);
+      ASSERT_EQ(held->push(samples[i], *guard, due), i >= wait);
+      if (i >= wait) {
+        ASSERT_EQ(due.tick, samples[i - wait].tick);
+      }
     }
   }
 }
