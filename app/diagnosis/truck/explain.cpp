@@ -99,7 +99,8 @@ void refine(Reading& reading, const TruckPass& pass, Explained& out) {
   const Config& config = reading.config;
   const SourceOptions& source = reading.options.source;
   const auto chosen = spring_with_rival(out.explanation);
-  Explained rival = out;
+  Explained rival;
+  if (chosen) rival = out;
   const Eigen::VectorXd left = refine_by_motion(config, source, out);
   if (left.size() == 0 || !chosen) return;
   rival.needless.effect[static_cast<std::size_t>(*chosen)] = true;
