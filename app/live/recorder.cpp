@@ -40,6 +40,7 @@ EventList Recorder::newest_events() const {
 }
 
 void Recorder::loop() noexcept {
+  take_others();  // what was added before the start stands before all that the rings hold
   while (!stop_.load(std::memory_order_acquire)) {
     turn();
     items_.wait(kWriteTurn);
@@ -61,15 +62,17 @@ void Recorder::turn() noexcept {
     keep(item.event);
   }
   take_lost();
-  {
-    const std::lock_guard lock{others_mutex_};
-    for (const hal::Event& event : others_) keep(event);
-    others_.clear();
-  }
+  take_others();
   if (rotate_.exchange(false, std::memory_order_acq_rel)) sink_.rotate();
   sink_.tick(clock_.monotonic_ns());
   const std::lock_guard lock{health_mutex_};
   health_ = sink_.health();
+}
+
+void Recorder::take_others() noexcept {
+  const std::lock_guard lock{others_mutex_};
+  for (const hal::Event& event : others_) keep(event);
+  others_.clear();
 }
 
 void Recorder::take_lost() noexcept {

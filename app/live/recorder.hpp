@@ -50,6 +50,7 @@ class Recorder {
  private:
   void loop() noexcept;
   void turn() noexcept;
+  void take_others() noexcept;
   void take_lost() noexcept;
   void keep(const hal::Event& event) noexcept;
 
