@@ -133,7 +133,18 @@ TEST(SpikeWatch, KeepsTheTwentyFourHighestOfASegment) {
 TEST(SpikeWatch, TellsAStrikeWhenItsSegmentEnds) {
   EXPECT_TRUE(strikes_of({{300, 60}}, kSegment - 1).empty());
   EXPECT_EQ(strikes_of({{300, 60}}, kSegment).size(), 1U);
+  EXPECT_EQ(strikes_of({{300, 60}, {900, 60}}, 1199).size(), 1U);
   EXPECT_EQ(strikes_of({{300, 60}, {900, 60}, {1500, 60}}, 1200).size(), 2U);
+}
+
+TEST(SpikeWatch, TheEndKeepsWhatNobodyAskedForYet) {
+  SpikeWatch watch{kSegment};
+  for (std::int64_t tick = 0; tick < kSegment + 100; ++tick)
+    watch.update(tick, (tick % 2 == 0 ? 1 : -1) + (tick == 300 ? 60 : 0));
+  watch.finish();
+  Strike strike;
+  ASSERT_TRUE(watch.next(strike));
+  EXPECT_EQ(strike.tick, 300);
 }
 
 TEST(SpikeWatch, ForgetsAnOpenStrikeWhereSamplesAreMissing) {

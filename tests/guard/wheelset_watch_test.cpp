@@ -341,6 +341,17 @@ TEST(WheelsetWatch, SaturatesFromAFifthOfAPercentOn) {
   }
 }
 
+// Noise of the one hides what the other shows of it, which a saturation does both ways.
+TEST(WheelsetWatch, WhatOneDirectionShowsIsNoSaturation) {
+  for (const auto& [noise, named] : {std::pair{0.3, true}, std::pair{0.4, false}}) {
+    TwoWheelsets wheelsets;
+    wheelsets.noise = noise;
+    wheelsets.sensor2 = saturating(0.05);
+    wheelsets.run(150'000);
+    EXPECT_EQ(saturation_of(wheelsets) != nullptr, named) << noise;
+  }
+}
+
 TEST(WheelsetWatch, SixBlocksSinceAPauseTellASaturation) {
   TwoWheelsets wheelsets;
   wheelsets.sensor2 = saturating(0.01);
