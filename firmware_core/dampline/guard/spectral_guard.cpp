@@ -306,9 +306,10 @@ void SpectralGuard::add_noise(BlockSeries& series, double most, double power,
 }
 
 // Noise that comes adds to all that is in its band; what is only told apart otherwise does not.
-bool SpectralGuard::rises_with(double noise, std::size_t block) const noexcept {
-  const double rise = frame_in_band_[block] - frame_in_band_.median();
-  return rise > kLeastRise * noise && rise > kRiseScatter * frame_in_band_.scatter();
+bool SpectralGuard::rises_with(double noise, std::size_t which, std::size_t block) const noexcept {
+  const BlockSeries& in_band = which == 0 ? frame_in_band_ : noise_[1];
+  const double rise = in_band[block] - in_band.median();
+  return rise > kLeastRise * noise && rise > kRiseScatter * in_band.scatter();
 }
 
 void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
@@ -321,7 +322,7 @@ void SpectralGuard::judge_burst(FaultLog& log, std::size_t which) noexcept {
   // The newest waits: what else spoils it may not be known yet.
   for (std::size_t i = 0; i + 1 < series.size(); ++i) {
     if (series[i] <= limit || series.tick(i) <= burst_tick_[which]) continue;
-    if (which == 0 && !rises_with(series[i] - usual, i)) continue;
+    if (!rises_with(series[i] - usual, which, i)) continue;
     burst_tick_[which] = series.tick(i);
     const auto half = PairSpectra::kHop * std::int64_t{PairSpectra::kSegmentsPerBlock + 1} / 2;
     if (log.spoilt(series.tick(i) - half, series.tick(i) + half) != 0) continue;

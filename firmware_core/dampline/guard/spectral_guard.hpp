@@ -68,7 +68,7 @@ class SpectralGuard {
   void judge_noise(FaultLog& log) noexcept;
   void count_impacts(const GuardInputs& inputs) noexcept;
   void add_noise(BlockSeries& series, double most, double power, std::int64_t tick) const noexcept;
-  [[nodiscard]] bool rises_with(double noise, std::size_t block) const noexcept;
+  [[nodiscard]] bool rises_with(double noise, std::size_t which, std::size_t block) const noexcept;
   void judge_burst(FaultLog& log, std::size_t which) noexcept;
   [[nodiscard]] double noise_limit(std::size_t channel) const noexcept;  // density
 
