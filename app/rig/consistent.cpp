@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "dampline/numeric/mean_t.hpp"
+
 namespace dampline::app::rig {
 namespace {
 
@@ -75,23 +77,16 @@ std::vector<Point> points_of(const std::vector<Line>& lines, Eigen::Index lags) 
   return out;
 }
 
-/// How sure it is that the force does work on the motion: mean over deviation of the mean, of
-/// blocks.
+/// How sure it is that the force does work on the motion: of blocks.
 double work_t(const std::vector<Point>& points) {
   double mean_n = 0.0;
   for (const Point& p : points) mean_n += p.force_n / static_cast<double>(points.size());
   std::array<double, kWorkBlocks> work{};
   for (std::size_t i = 0; i < points.size(); ++i)
     work[i * kWorkBlocks / points.size()] += (points[i].force_n - mean_n) * points[i].rate;
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double w : work) {
-    sum += w;
-    squares += w * w;
-  }
-  const auto n = static_cast<double>(kWorkBlocks);
-  const double variance = (squares - sum * sum / n) / (n - 1.0);
-  return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+  MeanT mean;
+  for (const double w : work) mean.add(w);
+  return mean.t();
 }
 
 /// Whether a spring or a mass of the right sign carries the force.

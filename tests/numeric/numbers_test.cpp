@@ -13,6 +13,7 @@
 #include "dampline/numeric/cholesky.hpp"
 #include "dampline/numeric/fourier.hpp"
 #include "dampline/numeric/log_histogram.hpp"
+#include "dampline/numeric/mean_t.hpp"
 #include "dampline/numeric/random.hpp"
 #include "dampline/numeric/wide.hpp"
 
@@ -249,6 +250,20 @@ TEST(SlidingWindow, WeighsTheLatestTheOldestFirst) {
   expect_window_of<25>();
   expect_window_of<41>();
   expect_window_of<42>();
+}
+
+// 2.5 with a deviation of the values of sqrt(5 / 3), of their mean half of that.
+TEST(MeanT, IsTheMeanOverItsDeviation) {
+  MeanT mean;
+  EXPECT_EQ(mean.t(), 0.0);
+  mean.add(1.0);
+  EXPECT_EQ(mean.t(), 0.0) << "of one";
+  for (const double x : {2.0, 3.0, 4.0}) mean.add(x);
+  EXPECT_EQ(mean.count(), 4.0);
+  EXPECT_NEAR(mean.t(), std::sqrt(15.0), 1e-12);
+  MeanT same;
+  for (int i = 0; i < 5; ++i) same.add(0.5);
+  EXPECT_EQ(same.t(), 0.0);
 }
 
 }  // namespace

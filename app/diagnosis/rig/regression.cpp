@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/beside.hpp"
+#include "dampline/numeric/mean_t.hpp"
 #include "dampline/rig/config.hpp"
 
 namespace dampline::app::rig {
@@ -171,16 +172,10 @@ Fit Regression::fit(const ColumnSet& set, double ridge) const {
 }
 
 double block_t(const Fit& before, const Fit& after) {
-  const auto n = static_cast<double>(before.block_error.size());
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t b = 0; b < before.block_error.size(); ++b) {
-    const double d = before.block_error[b] - after.block_error[b];
-    sum += d;
-    squares += d * d;
-  }
-  const double variance = (squares - sum * sum / n) / (n - 1.0);
-  return variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
+  MeanT gain;
+  for (std::size_t b = 0; b < before.block_error.size(); ++b)
+    gain.add(before.block_error[b] - after.block_error[b]);
+  return gain.t();
 }
 
 double jackknife_std(const std::vector<double>& left_out) {

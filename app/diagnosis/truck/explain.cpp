@@ -18,6 +18,7 @@
 #include "app/identify/identify_source.hpp"
 #include "app/identify/low_pass.hpp"
 #include "dampline/effect/explainer.hpp"
+#include "dampline/numeric/mean_t.hpp"
 
 namespace dampline::app {
 
@@ -88,9 +89,10 @@ void look_for_other(Reading& reading, const TruckPass& first, Explained& out) {
 }
 
 /// Mean over its deviation, of what blocks gain.
-double t_of(const Eigen::ArrayXd& gain) {
-  const auto n = static_cast<double>(gain.size());
-  return gain.mean() / std::sqrt((gain - gain.mean()).square().sum() / (n * (n - 1.0)));
+double t_of(const Eigen::VectorXd& gain) {
+  MeanT mean;
+  for (const double g : gain) mean.add(g);
+  return mean.t();
 }
 
 /// A stop and a spring that hardens leave the equations almost alike, since these see the

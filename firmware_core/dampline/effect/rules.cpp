@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dampline/numeric/mean_t.hpp"
+
 namespace dampline::effect {
 namespace {
 
@@ -151,17 +153,10 @@ double as_normal(double t, double freedom) noexcept {
 }  // namespace
 
 double block_t(const ModelFit& before, const ModelFit& after, std::size_t entries) noexcept {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t e = 0; e < entries; ++e) {
-    const double d = before.held_out_error[e] - after.held_out_error[e];
-    sum += d;
-    squares += d * d;
-  }
-  const auto n = static_cast<double>(entries);
-  const double variance = (squares - sum * sum / n) / (n - 1.0);
-  const double t = variance > 0.0 ? sum / std::sqrt(n * variance) : 0.0;
-  return entries < kManyEntries ? as_normal(t, n - 1.0) : t;
+  MeanT gain;
+  for (std::size_t e = 0; e < entries; ++e)
+    gain.add(before.held_out_error[e] - after.held_out_error[e]);
+  return entries < kManyEntries ? as_normal(gain.t(), gain.count() - 1.0) : gain.t();
 }
 
 double coefficient_t(const ModelFit& fit, const ModelFit& before) noexcept {
