@@ -109,6 +109,7 @@ TEST(EdgeLedger, CountsNoLossWhereANumberGoesBack) {
   static_cast<void>(ledger.enter(edge(2, false, 2)));
   EXPECT_EQ(ledger.enter(edge(3, true, 2)).lost_before, 0U);
   EXPECT_EQ(ledger.enter(edge(4, false, 1)).lost_before, 0U);
+  EXPECT_EQ(ledger.enter(edge(5, true, 0x80000002U)).lost_before, 0U) << "half round is back";
   EXPECT_EQ(ledger.health().lost, 0U);
 }
 

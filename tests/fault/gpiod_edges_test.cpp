@@ -91,6 +91,18 @@ TEST(GpiodEdges, LetNoBusyLineKeepTheOthersWaiting) {
   EXPECT_TRUE(other) << reads;
 }
 
+TEST(GpiodEdges, ComeFromEachOfThreeLines) {
+  GpioModel model;
+  auto source = open_edges({.chip = "gpiochip_model",
+                            .lines = {{.offset = 2}, {.offset = 4}, {.offset = 6}},
+                            .run_time = {kOffsetNs}});
+  ASSERT_TRUE(source.ok()) << source.error_text();
+  for (const unsigned offset : {2U, 4U, 6U}) model.edge(offset, true, 10 * offset);
+  std::array<int, 3> edges{};
+  for (const hal::Edge& edge : read_all(*source.value())) ++edges.at(edge.line);
+  EXPECT_EQ(edges, (std::array{1, 1, 1}));
+}
+
 /// What a full queue costs, and who notices: libgpiod 2 counts, libgpiod 1 sees an odd number as
 /// two edges of one direction and an even one not at all.
 class Overrun : public testing::TestWithParam<int> {};
