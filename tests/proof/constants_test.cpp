@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <regex>
+#include <sstream>
 
 namespace dampline::proof {
 namespace {
@@ -38,17 +41,34 @@ std::vector<std::string> texts(const std::vector<Constant>& constants) {
   return out;
 }
 
+std::string constants_markdown() {
+  std::ifstream stream{std::filesystem::path{DAMPLINE_SOURCE_DIR} /
+                       "firmware_core/docs/constants.md"};
+  return {std::istreambuf_iterator<char>{stream}, {}};
+}
+
 /// A new threshold needs a row with what it decides and where its value comes from; a row whose
 /// constant is gone, or has another value, goes or says the new one.
 TEST(Constants, StandInTheTableWithTheirValues) {
-  const std::filesystem::path top{DAMPLINE_SOURCE_DIR};
-  std::ifstream stream{top / "firmware_core/docs/constants.md"};
-  const std::string markdown{std::istreambuf_iterator<char>{stream}, {}};
-  const std::vector<Constant> table = constants_in_table(markdown);
+  const std::vector<Constant> table = constants_in_table(constants_markdown());
   const std::vector<Constant> sources = constants_of(judging_sources());
   ASSERT_GT(sources.size(), 100U);
   EXPECT_THAT(missing_from(table, sources), IsEmpty()) << "not in constants.md";
   EXPECT_THAT(missing_from(sources, table), IsEmpty()) << "no such constant";
+}
+
+/// The head says how many have an origin of each kind.
+TEST(Constants, AreCountedByTheirOrigin) {
+  std::istringstream lines{constants_markdown()};
+  std::map<char, std::size_t> stated, counted;
+  const std::regex head{R"(\| ([a-d]) \| .* \| (\d+) \|)"}, row{R"((\|[^|]*){5}\| ([a-d]) .*\|)"};
+  std::smatch found;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, found, head)) stated[found.str(1)[0]] = std::stoul(found.str(2));
+    if (std::regex_match(line, found, row)) ++counted[found.str(2)[0]];
+  }
+  EXPECT_EQ(stated, counted);
+  EXPECT_THAT(stated, SizeIs(4));
 }
 
 TEST(Constants, AreThoseThatAreWrittenInNumbers) {
