@@ -95,7 +95,7 @@ std::vector<Constant> constants_in_table(std::string_view markdown) {
       at = next;
     }
     if (cells.size() == 6 && cells[1].starts_with('k'))
-      out.push_back({cells[0], cells[1], cells[2]});
+      out.push_back({cells[0], cells[1], cells[2], cells[5]});
   }
   return out;
 }

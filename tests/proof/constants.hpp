@@ -10,9 +10,10 @@ namespace dampline::proof {
 
 /// A number that the sources or the table of constants.md give a name.
 struct Constant {
-  std::string file;   ///< room and stem: guard/spike_watch
-  std::string name;   ///< kStrike
-  std::string value;  ///< as it is written, without breaks of lines
+  std::string file;      ///< room and stem: guard/spike_watch
+  std::string name;      ///< kStrike
+  std::string value;     ///< as it is written, without breaks of lines
+  std::string origin{};  ///< in the table: the letter of its kind, and what is known
 
   [[nodiscard]] std::string text() const { return file + ' ' + name + " = " + value; }
 };
