@@ -68,7 +68,8 @@ inline effect::Grids true_grids(const sim::SimulationConfig& config, const Plant
   if (planted.parameter == "bump_stop_gap") out.bump_gap.fill(planted.truth / scale_m);
   if (planted.parameter == "presliding_hysteresis_distance")
     out.dahl_distance.fill(planted.truth / scale_m);
-  if (planted.parameter == "backlash_gap") out.backlash_gap.fill(planted.truth / scale_m);
+  if (planted.parameter == "backlash_gap")
+    out.play.fill({planted.truth / scale_m, effect::kInnerWidthMps});
   const auto& modes = t.modes;
   if (modes.pitch_inertia_kgm2 > 0.0) {
     const double arm_m = modes.pitch_half_wheelbase_m;

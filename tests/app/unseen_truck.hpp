@@ -158,6 +158,8 @@ inline void change_friction(UnseenTruck& t, Law& law) {
       if (std::abs(pin_m) < 0.5 * gap_m) stretch_m = 0.0;
       return level_n * stretch_m / kStretchM;
     };
+    t.truths.emplace_back("backlash_force", level_n);
+    t.truths.emplace_back("backlash_gap", gap_m + 0.5 * kStretchM);
   } else if (effect == "progressive_friction") {
     const double length_m = y_m / (0.2 + 0.4 * t.size);
     law.level = [=](const Motion& m) {

@@ -104,16 +104,16 @@ TEST(Grids, DrawTogetherAroundALength) {
   Grids out;
   ASSERT_TRUE(draw_together(e, 0, out));
   const double found = std::sqrt(kBacklashGap[3] * kBacklashGap[4]);
-  EXPECT_NEAR(std::sqrt(out.backlash_gap.front() * out.backlash_gap.back()), found, 1e-12);
-  EXPECT_LT(out.backlash_gap.front(), 0.8 * found);
-  EXPECT_GT(out.backlash_gap.back(), 1.2 * found);
+  EXPECT_NEAR(std::sqrt(out.play.front().gap * out.play.back().gap), found, 1e-12);
+  EXPECT_LT(out.play.front().gap, 0.82 * found);
+  EXPECT_GT(out.play.back().gap, 1.2 * found);
   EXPECT_EQ(out.scale_m, 2e-3);
   EXPECT_TRUE(out.is_fine(Effect::kBacklash));
   EXPECT_FALSE(out.is_fine(Effect::kBumpStop));
   EXPECT_EQ(out.dahl_distance, kDahlDistance);
   Grids finer;
   ASSERT_TRUE(draw_together(e, 1, finer));
-  EXPECT_GT(finer.backlash_gap.front(), out.backlash_gap.front());
+  EXPECT_GT(finer.play.front().gap, out.play.front().gap);
 }
 
 TEST(Grids, KeepTheOctavesOfSpeeds) {
@@ -153,6 +153,36 @@ TEST(Grids, PitchIsDrawnTogetherInFrequencyAndSlip) {
   EXPECT_NEAR(out.pitch[4].slip_m, kPitch[4].slip_m, 1e-12);
   EXPECT_LT(out.pitch[3].frequency_hz, out.pitch[4].frequency_hz);
   EXPECT_LT(out.pitch[1].slip_m, out.pitch[4].slip_m);
+}
+
+TEST(Grids, PlayIsDrawnTogetherInGapAndWidth) {
+  Explanation e = with_step(Effect::kBacklash, kPlainForm, 3, 3.0);
+  Grids out;
+  ASSERT_TRUE(draw_together(e, 0, out));
+  for (std::size_t i = 0; i < kFineGaps; ++i) {
+    EXPECT_EQ(out.play[i].gap, out.play[i + kFineGaps].gap);
+    EXPECT_EQ(out.play[i].width_mps, out.play[0].width_mps);
+  }
+  EXPECT_NEAR(out.play.front().width_mps, kInnerWidthMps, 1e-12) << "the sharpest is tried";
+  EXPECT_GT(out.play.back().width_mps, 2.0 * kInnerWidthMps);
+  EXPECT_EQ(line_of(Effect::kBacklash, false, out), kFineGaps);
+  // Found again between two points and beyond the second line.
+  e.grids = out;
+  e.step[0].chosen.variant = 5;
+  e.step[0].place = 5.5;
+  e.step[0].line_offset = 1.0;
+  const double ratio = out.play.back().width_mps / out.play.front().width_mps;
+  const PlayShape found = play_of(e.step[0], out);
+  EXPECT_NEAR(found.gap, std::sqrt(out.play[5].gap * out.play[6].gap), 1e-12);
+  EXPECT_NEAR(found.width_mps, out.play.back().width_mps * ratio, 1e-12);
+  // No end is sharper than the velocity is known, or yields for ever.
+  Grids next;
+  e.step[0].line_offset = -9.0;
+  ASSERT_TRUE(draw_together(e, 1, next));
+  EXPECT_NEAR(next.play.front().width_mps, kInnerWidthMps, 1e-12);
+  e.step[0].line_offset = 9.0;
+  ASSERT_TRUE(draw_together(e, 1, next));
+  EXPECT_NEAR(std::sqrt(next.play.front().width_mps * next.play.back().width_mps), 16e-3, 1e-12);
 }
 
 TEST(Grids, NothingToDrawTogether) {

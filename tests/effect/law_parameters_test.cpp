@@ -35,17 +35,19 @@ struct Described {
   double deviation{0.0};   ///< of every coefficient, friction and spring
   double factor{1.0};
   double deflection_m{0.0};  ///< rms
+  Grids grids{.scale_m = kLawScaleM};
+  double friction{kLevelFriction};
 
   [[nodiscard]] Explanation operator()() const {
     Explanation out;
-    out.grids.scale_m = kLawScaleM;
+    out.grids = grids;
     out.base_count = of_base;
     out.step_count = laws.size() - of_base;
     Detail detail;
     for (const Candidate& one : laws)
       detail.model = detail.model.with(with_places ? with_slopes(one, out.grids) : one);
     detail.fit.ok = true;
-    detail.fit.theta[ModelFit::kCoulomb] = kLevelFriction;
+    detail.fit.theta[ModelFit::kCoulomb] = friction;
     detail.fit.theta[ModelFit::kStiffness] = kLevelSpring;
     detail.fit.terms = ModelFit::kFirstEffect;
     for (const double coefficient : coefficients)
@@ -137,6 +139,37 @@ TEST(LawParameters, OfTwoNeighboursAreTheirSum) {
   const Explanation e = described();
   EXPECT_NEAR(e.step[0].place, 3.25, 1e-12);
   EXPECT_NEAR(e.final_coulomb_n.value, 200.0 + 80.0, 1e-9) << "with what a history replaced";
+}
+
+// The width of its end makes it uncertain where a gap ends; its lines are one law otherwise.
+TEST(LawParameters, OfAPlayKnowItsGapTheLessTheMoreItsEndYields) {
+  const auto gap_of = [](double width_mps) {
+    Described described{{law_of(Effect::kBacklash, kPlainForm, 6)}, {0.08, 0.0, 0.0}};
+    Grids& grids = described.grids;
+    grids.fine[static_cast<std::size_t>(Effect::kBacklash)] = true;
+    for (std::size_t i = 0; i < kBacklashGaps; ++i)
+      grids.play[i] = {0.3 * std::pow(1.04, static_cast<double>(i % kFineGaps)), width_mps};
+    const Explanation e = described();
+    EXPECT_EQ(e.step[0].parameter_count, 2U);
+    return e.step[0].parameter[1].estimate;
+  };
+  const Estimate sharp = gap_of(kInnerWidthMps);
+  const Estimate soft = gap_of(6e-3);
+  EXPECT_NEAR(sharp.value, 0.95 * kLawScaleM * 0.3 * 1.04 * 1.04, 1e-12);
+  EXPECT_EQ(soft.value, sharp.value);
+  const double yields_m = 0.5 * (6e-3 * 6e-3 - kInnerWidthMps * kInnerWidthMps) / 0.08;
+  EXPECT_NEAR(soft.std * soft.std - sharp.std * sharp.std, std::pow(0.25 * yields_m, 2),
+              1e-3 * std::pow(0.25 * yields_m, 2));
+}
+
+TEST(LawParameters, NoFrictionDrivesBesideAPlay) {
+  Described described{{law_of(Effect::kBacklash, kPlainForm, 2)}, {0.08, 0.0}};
+  described.friction = 0.01;
+  EXPECT_NEAR(described().final_coulomb_n.value, 90.0, 1e-9);
+  described.friction = -0.01;
+  const Estimate level = described().final_coulomb_n;
+  EXPECT_NEAR(level.value, 80.0, 1e-9);
+  EXPECT_GT(level.std, 10.0) << "as much of the law is none";
 }
 
 TEST(LawParameters, OfPitchAreItsFrequencyAndForce) {

@@ -143,6 +143,33 @@ TEST(Laws, BacklashHoldsNothingUntilTheGapIsTakenUp) {
   }
 }
 
+// An end that yields does not hold a slow truck with its whole force.
+TEST(Laws, APlayHasTheWidthOfItsLine) {
+  Grids grids{.scale_m = kScaleM};
+  for (std::size_t i = kFineGaps; i < kBacklashGaps; ++i) grids.play[i].width_mps = 8e-3;
+  Laws laws{grids, kStepS};
+  constexpr double kSlowMps = 4e-3;
+  LawValues out;
+  for (int n = 0; n <= 2000; ++n) out = laws(moving(n * 2e-6, kSlowMps));
+  for (std::size_t i = 0; i < kBacklashGaps; ++i)
+    EXPECT_NEAR(out[kBacklash + at(i)],
+                std::erf(0.5 * std::sqrt(M_PI) * kSlowMps / grids.play[i].width_mps), 1e-5)
+        << i;
+}
+
+// A mass at the speed of the width comes to rest as the end's force is whole: energy against work.
+TEST(Laws, AnEndYieldsAsFarAsItStopsAMass) {
+  EXPECT_EQ(end_yields_m(kInnerWidthMps, 0.2), 0.0) << "no more than the velocity's error";
+  EXPECT_EQ(end_yields_m(6e-3, 0.0), 0.0);
+  const double own_mps = std::sqrt(6e-3 * 6e-3 - kInnerWidthMps * kInnerWidthMps);
+  const double yields_m = end_yields_m(6e-3, 0.2);
+  double s_m = 0.0;
+  double v_mps = own_mps;
+  for (double step_s = 1e-7; v_mps > 0.0; s_m += step_s * v_mps)
+    v_mps -= step_s * 2.0 * 0.2 * s_m / yields_m;  // y'' = -2 F / M
+  EXPECT_NEAR(s_m, yields_m, 1e-4 * yields_m);
+}
+
 TEST(Laws, PitchTurnsAroundNoFrictionUntilOneDamperSlidesBack) {
   Laws laws{{.scale_m = kScaleM}, kStepS};
   const Point p = moving(0.0, 0.02);

@@ -256,5 +256,31 @@ TEST(Surrogate, HasNoFrictionInsideItsPlay) {
   EXPECT_LT(peak, 141.4 * 2.0e-3 + 0.05);  // the free swing that is left fits into the gap
 }
 
+// A push sends the mass to the end of its play at v: y'' = -2 F s / s_0 stops it within a quarter
+// of a swing, where the force is v sqrt(F / (2 s_0)) of one unit of mass; an end that does not
+// yield answers with all of F.
+TEST(Surrogate, TheEndOfAPlayYields) {
+  constexpr double kForceMps2 = 0.4;
+  constexpr double kYieldsM = 0.2e-3;
+  constexpr double kPushMps2 = 0.2;  // on both wheelsets, for three samples
+  const double v_mps = 2.0 * kPushMps2 * 3.0 / kSurrogateHz;
+  SurrogateConfig config;
+  const auto peak_at = [&](double width_mps) {
+    config.memory = {true, kForceMps2, 2e-3, width_mps};
+    Surrogate surrogate{config};
+    double peak = 0.0;
+    for (int n = 0; n < 400; ++n) {
+      const bool pushes = n >= 100 && n < 103;
+      const auto out = surrogate.next(wheelsets_at(n, pushes ? -kPushMps2 : 0.0));
+      if (out) peak = std::max(peak, std::abs(out->accel_mps2[0]));
+    }
+    return peak;
+  };
+  const double own_mps = std::sqrt(2.0 * kForceMps2 * kYieldsM);
+  EXPECT_NEAR(peak_at(std::hypot(own_mps, kInnerWidthMps)),
+              v_mps * std::sqrt(0.5 * kForceMps2 / kYieldsM), 0.03 * kForceMps2);
+  EXPECT_GT(peak_at(kInnerWidthMps), 0.15) << "as far as samples show a leap of 5 ms";
+}
+
 }  // namespace
 }  // namespace dampline::effect

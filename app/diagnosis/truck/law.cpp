@@ -35,13 +35,16 @@ double steady(int column, const effect::Grids& grids, double v, double sign) {
     const auto width = static_cast<std::size_t>(column - effect::kSign);
     return sign != 0.0 ? sign : smooth_sign(v, effect::kWidthMps[width]);
   }
-  if (sign == 0.0) sign = smooth_sign(v, effect::kInnerWidthMps);
+  const bool play = within<effect::kBacklashGaps>(column, effect::kBacklash);
+  const double width_mps =
+      play ? grids.play[static_cast<std::size_t>(column - effect::kBacklash)].width_mps
+           : effect::kInnerWidthMps;
+  if (sign == 0.0) sign = smooth_sign(v, width_mps);
   if (within<effect::kStribeckSpeeds>(column, effect::kStribeck)) {
     const auto i = static_cast<std::size_t>(column - effect::kStribeck);
     return sign * std::exp(-std::abs(v) / grids.stribeck_mps[i]);
   }
-  const bool memory = within<effect::kDahlDistances>(column, effect::kDahl) ||
-                      within<effect::kBacklashGaps>(column, effect::kBacklash) ||
+  const bool memory = play || within<effect::kDahlDistances>(column, effect::kDahl) ||
                       within<effect::kPitchModes>(column, effect::kPitchSign);
   if (memory) return sign;
   if (within<effect::kRelaxations>(column, effect::kRelaxing))

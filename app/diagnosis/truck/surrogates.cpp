@@ -78,6 +78,7 @@ namespace {
 /// Parameters of a step, per unit of mass.
 struct Parts {
   const effect::Step& step;
+  const effect::Grids& grids;
   double mass_kg;
   [[nodiscard]] double plain(std::size_t i) const { return step.parameter[i].estimate.value; }
   [[nodiscard]] double force(std::size_t i) const { return plain(i) / mass_kg; }
@@ -93,7 +94,8 @@ void add(const Parts& p, double coulomb_mps2, effect::SurrogateConfig& out) {
     case Effect::kPreslidingHysteresis:
     case Effect::kBacklash:
       if (out.memory.force_mps2 > 0.0) return;
-      out.memory = {kind == Effect::kBacklash, p.force(0), p.plain(1)};
+      out.memory = {kind == Effect::kBacklash, p.force(0), p.plain(1),
+                    effect::play_of(p.step, p.grids).width_mps};
       out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
       return;
     case Effect::kViscous:
@@ -139,7 +141,8 @@ void add(const Parts& p, double coulomb_mps2, effect::SurrogateConfig& out) {
 effect::SurrogateConfig with_found(effect::SurrogateConfig out, const effect::Explanation& e) {
   const double coulomb_mps2 = out.coulomb_mps2;
   const double mass_kg = e.final_coulomb_n.value / coulomb_mps2;
-  for (std::size_t i = 0; i < e.step_count; ++i) add({e.step[i], mass_kg}, coulomb_mps2, out);
+  for (std::size_t i = 0; i < e.step_count; ++i)
+    add({e.step[i], e.grids, mass_kg}, coulomb_mps2, out);
   return out;
 }
 

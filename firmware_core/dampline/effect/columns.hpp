@@ -30,6 +30,27 @@ inline constexpr std::array<double, kDahlDistances> kDahlDistance{0.05, 0.08, 0.
                                                                   0.32, 0.5,  0.8,   1.25};
 inline constexpr std::array<double, kBacklashGaps> kBacklashGap{0.1, 0.15, 0.22, 0.33,
                                                                 0.5, 0.75, 1.1,  1.7};
+/// Free play, and how wide about v = 0 the force of its end stands between none and whole: an end
+/// that sticks holds a truck that creeps, with a force that is any of these.
+struct PlayShape {
+  double gap;  ///< in units of the deflection's size
+  double width_mps;
+};
+/// How far the end of a play yields until its force is whole, from the width that is found, which
+/// has the velocity's error in it: an end of F / s stops a mass M of less than sqrt(2 F s / M)
+/// before. `force_mps2`: F / M.
+constexpr double end_yields_m(double width_mps, double force_mps2) noexcept {
+  const double over_m2_s2 = width_mps * width_mps - kInnerWidthMps * kInnerWidthMps;
+  return over_m2_s2 > 0.0 && force_mps2 > 0.0 ? 0.5 * over_m2_s2 / force_mps2 : 0.0;
+}
+constexpr std::array<PlayShape, kBacklashGaps> play_shapes() noexcept {
+  std::array<PlayShape, kBacklashGaps> out{};
+  for (std::size_t i = 0; i < kBacklashGaps; ++i) out[i] = {kBacklashGap[i], kInnerWidthMps};
+  return out;
+}
+/// Drawn together around a gap, the same points are gaps times widths.
+inline constexpr std::size_t kFineGaps = 4;
+inline constexpr std::size_t kFinePlayWidths = kBacklashGaps / kFineGaps;
 /// Times in which a spring behind a dashpot (Maxwell) gives way, s: corners from 32 to 1.4 Hz,
 /// beyond which it is a dashpot or a spring.
 inline constexpr std::array<double, kRelaxations> kRelaxationS{0.005, 0.011, 0.024, 0.053, 0.117};

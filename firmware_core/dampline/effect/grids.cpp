@@ -12,11 +12,12 @@ namespace {
 
 /// Ratios of neighbours, by round; the last one is kept.
 struct Ratios {
-  double length, time, frequency, pitch, slip, damping;
+  double length, time, frequency, pitch, slip, damping, gap, width;
 };
-constexpr std::array<Ratios, 3> kRatios{{{1.08, 1.3, 1.03, 1.12, 1.3, 1.6},
-                                         {1.04, 1.15, 1.015, 1.05, 1.12, 1.3},
-                                         {1.03, 1.1, 1.01, 1.03, 1.08, 1.2}}};
+constexpr std::array<Ratios, 3> kRatios{{{1.08, 1.3, 1.03, 1.12, 1.3, 1.6, 1.15, 3.0},
+                                         {1.04, 1.15, 1.015, 1.05, 1.12, 1.3, 1.07, 1.4},
+                                         {1.03, 1.1, 1.01, 1.03, 1.08, 1.2, 1.04, 1.25}}};
+constexpr double kWidestPlayMps = 16.0e-3;
 
 /// The point at a place between those of a grid.
 template <std::size_t N>
@@ -43,31 +44,60 @@ void speeds_around(double centre_mps, std::array<double, kStribeckSpeeds>& grid)
     grid[i] = centre_mps * std::exp2(static_cast<double>(i) - static_cast<double>(kFineStribeck));
 }
 
-/// Steps from the middle of three lines or of the points of a line.
-double from_middle(std::size_t i, std::size_t count) noexcept {
-  return static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0);
-}
+/// A grid of two dimensions: lines of points, one after the other.
+template <std::size_t Points, std::size_t Lines, class Shape>
+struct Plane {
+  double Shape::*along;
+  double Shape::*across;
 
-void pitch_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
-  const PitchShape found = pitch_of(step, grids);
-  for (std::size_t i = 0; i < kPitchModes; ++i) {
-    grids.pitch[i] = {
-        found.frequency_hz *
-            std::pow(r.pitch, from_middle(i % kPitchFrequencies, kPitchFrequencies)),
-        found.slip_m *
-            std::pow(r.slip, from_middle(i / kPitchFrequencies, kPitchModes / kPitchFrequencies))};
+  /// Between the points of a grid.
+  template <std::size_t N>
+  [[nodiscard]] Shape at(const Step& step, const std::array<Shape, N>& grid) const noexcept {
+    static_assert(Points * Lines <= N);
+    const std::size_t line = step.chosen.variant / Points;
+    const std::size_t point = step.chosen.variant % Points;
+    std::array<double, Points> in_line{};
+    for (std::size_t i = 0; i < Points; ++i) in_line[i] = grid[line * Points + i].*along;
+    std::array<double, Lines> lines{};
+    for (std::size_t i = 0; i < Lines; ++i) lines[i] = grid[i * Points + point].*across;
+    Shape out{};
+    out.*along = point_at(in_line, step.place - static_cast<double>(line * Points));
+    out.*across = point_at(lines, static_cast<double>(line) + step.line_offset);
+    return out;
   }
-}
+  /// Draws a grid together; ratios of neighbours. Points that are left repeat the last one.
+  template <std::size_t N>
+  void around(const Shape& centre, double along_ratio, double across_ratio,
+              std::array<Shape, N>& grid) const noexcept {
+    for (std::size_t i = 0; i < N; ++i) {
+      const std::size_t line = std::min(i / Points, Lines - 1);
+      const std::size_t point = std::min(i - line * Points, Points - 1);
+      grid[i].*along = centre.*along * std::pow(along_ratio, from_middle(point, Points));
+      grid[i].*across = centre.*across * std::pow(across_ratio, from_middle(line, Lines));
+    }
+  }
 
-void flexible_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
-  const FlexibleShape found = flexible_of(step, grids);
-  for (std::size_t i = 0; i < kFlexibleModes; ++i) {
-    const std::size_t line = std::min(i / kFineFrequencies, kFineDampings - 1);
-    const std::size_t point = std::min(i - line * kFineFrequencies, kFineFrequencies - 1);
-    grids.flexible[i] = {
-        found.frequency_hz * std::pow(r.frequency, from_middle(point, kFineFrequencies)),
-        found.damping_ratio * std::pow(r.damping, from_middle(line, kFineDampings))};
+ private:
+  static double from_middle(std::size_t i, std::size_t count) noexcept {
+    return static_cast<double>(i) - 0.5 * (static_cast<double>(count) - 1.0);
   }
+};
+constexpr Plane<kPitchFrequencies, kPitchModes / kPitchFrequencies, PitchShape> kPitchPlane{
+    &PitchShape::frequency_hz, &PitchShape::slip_m};
+constexpr Plane<kFineFrequencies, kFineDampings, FlexibleShape> kFlexiblePlane{
+    &FlexibleShape::frequency_hz, &FlexibleShape::damping_ratio};
+constexpr Plane<kFineGaps, kFinePlayWidths, PlayShape> kPlayPlane{&PlayShape::gap,
+                                                                  &PlayShape::width_mps};
+
+/// One line of a grid that is not fine yet; what lies across is the same for all.
+template <class Shape, std::size_t N>
+Shape on_one_line(const Step& step, const std::array<Shape, N>& grid,
+                  double Shape::*along) noexcept {
+  std::array<double, N> line{};
+  for (std::size_t i = 0; i < N; ++i) line[i] = grid[i].*along;
+  Shape out = grid[step.chosen.variant];
+  out.*along = point_at(line, step.place);
+  return out;
 }
 
 /// In equilibrium the spring's mean force is none: the kink lies beside the mean of the motion by
@@ -77,6 +107,13 @@ double kink_of(double difference_npm, double stiffness_npm) noexcept {
   const double a = std::clamp(0.5 * difference_npm / stiffness_npm, -1.0, 1.0) *
                    std::sqrt(2.0 / std::numbers::pi);
   return a / std::sqrt(1.0 - a * a);
+}
+
+void play_around(const Step& step, const Ratios& r, Grids& grids) noexcept {
+  PlayShape found = play_of(step, grids);
+  found.width_mps =
+      std::clamp(found.width_mps, kInnerWidthMps * std::sqrt(r.width), kWidestPlayMps);
+  kPlayPlane.around(found, r.gap, r.width, grids.play);
 }
 
 bool step_around(const Step& step, double stiffness_npm, const Ratios& r, Grids& grids) noexcept {
@@ -95,16 +132,16 @@ bool step_around(const Step& step, double stiffness_npm, const Ratios& r, Grids&
       around_place(step.place, r.length, grids.dahl_distance);
       return true;
     case Effect::kBacklash:
-      around_place(step.place, r.length, grids.backlash_gap);
+      play_around(step, r, grids);
       return true;
     case Effect::kViscoelastic:
       around_place(step.place, r.time, grids.relaxation_s);
       return true;
     case Effect::kUnmodelledMode:
       if (step.chosen.form == kPitchForm) {
-        pitch_around(step, r, grids);
+        kPitchPlane.around(pitch_of(step, grids), r.pitch, r.slip, grids.pitch);
       } else {
-        flexible_around(step, r, grids);
+        kFlexiblePlane.around(flexible_of(step, grids), r.frequency, r.damping, grids.flexible);
       }
       return true;
     default:
@@ -115,40 +152,25 @@ bool step_around(const Step& step, double stiffness_npm, const Ratios& r, Grids&
 }  // namespace
 
 std::size_t line_of(Effect effect, bool is_pitch, const Grids& grids) noexcept {
+  if (effect == Effect::kBacklash && grids.is_fine(effect)) return kFineGaps;
   if (effect != Effect::kUnmodelledMode) return kMostCandidates;
   if (is_pitch) return kPitchFrequencies;
   return grids.is_fine(effect) ? kFineFrequencies : kFlexibleModes;
 }
 
 PitchShape pitch_of(const Step& step, const Grids& grids) noexcept {
-  constexpr std::size_t kLines = kPitchModes / kPitchFrequencies;
-  const std::size_t line = step.chosen.variant / kPitchFrequencies;
-  const std::size_t point = step.chosen.variant % kPitchFrequencies;
-  std::array<double, kPitchFrequencies> hz{};
-  for (std::size_t i = 0; i < kPitchFrequencies; ++i)
-    hz[i] = grids.pitch[line * kPitchFrequencies + i].frequency_hz;
-  std::array<double, kLines> slip_m{};
-  for (std::size_t i = 0; i < kLines; ++i)
-    slip_m[i] = grids.pitch[i * kPitchFrequencies + point].slip_m;
-  return {point_at(hz, static_cast<double>(point) + step.place - step.chosen.variant),
-          point_at(slip_m, static_cast<double>(line) + step.line_offset)};
+  return kPitchPlane.at(step, grids.pitch);
 }
 
 FlexibleShape flexible_of(const Step& step, const Grids& grids) noexcept {
-  std::array<double, kFlexibleModes> hz{};
-  for (std::size_t i = 0; i < kFlexibleModes; ++i) hz[i] = grids.flexible[i].frequency_hz;
-  const std::size_t v = step.chosen.variant;
-  if (!grids.is_fine(Effect::kUnmodelledMode))
-    return {point_at(hz, step.place), grids.flexible[v].damping_ratio};
-  const std::size_t line = v / kFineFrequencies;
-  std::array<double, kFineFrequencies> part{};
-  std::copy_n(hz.begin() + static_cast<std::ptrdiff_t>(line * kFineFrequencies), part.size(),
-              part.begin());
-  std::array<double, kFineDampings> damping{};
-  for (std::size_t i = 0; i < kFineDampings; ++i)
-    damping[i] = grids.flexible[i * kFineFrequencies].damping_ratio;
-  return {point_at(part, step.place - static_cast<double>(line * kFineFrequencies)),
-          point_at(damping, static_cast<double>(line) + step.line_offset)};
+  return grids.is_fine(Effect::kUnmodelledMode)
+             ? kFlexiblePlane.at(step, grids.flexible)
+             : on_one_line(step, grids.flexible, &FlexibleShape::frequency_hz);
+}
+
+PlayShape play_of(const Step& step, const Grids& grids) noexcept {
+  return grids.is_fine(Effect::kBacklash) ? kPlayPlane.at(step, grids.play)
+                                          : on_one_line(step, grids.play, &PlayShape::gap);
 }
 
 bool as_kink(Explanation& e) noexcept {

@@ -26,7 +26,7 @@ struct Grids {
   std::array<double, kBumpGaps> bump_gap{kBumpGap};
   double kink{0.0};  ///< where a spring that differs by direction bends; the others are lengths
   std::array<double, kDahlDistances> dahl_distance{kDahlDistance};
-  std::array<double, kBacklashGaps> backlash_gap{kBacklashGap};
+  std::array<PlayShape, kBacklashGaps> play{play_shapes()};
   std::array<double, kRelaxations> relaxation_s{kRelaxationS};
   std::array<PitchShape, kPitchModes> pitch{kPitch};
   std::array<FlexibleShape, kFlexibleModes> flexible{flexible_shapes()};
@@ -36,12 +36,14 @@ struct Grids {
   }
 };
 
-/// Modes stand in lines of one slip or damping, frequency after frequency: points in a line.
+/// Modes stand in lines of one slip or damping, frequency after frequency, and gaps in lines of one
+/// width: points in a line.
 [[nodiscard]] std::size_t line_of(Effect effect, bool is_pitch, const Grids& grids) noexcept;
 
-/// The mode of a step, between the points of its grid.
+/// The mode or the play of a step, between the points of its grid.
 [[nodiscard]] PitchShape pitch_of(const Step& step, const Grids& grids) noexcept;
 [[nodiscard]] FlexibleShape flexible_of(const Step& step, const Grids& grids) noexcept;
+[[nodiscard]] PlayShape play_of(const Step& step, const Grids& grids) noexcept;
 
 /// A stop on one side that stands near the middle as a spring that differs by direction, which
 /// bends where the truck hangs at rest, and not at the mean of its motion. False: the first effect

@@ -73,7 +73,7 @@ void Laws::stiffness(double y, LawValues& out) const noexcept {
   }
 }
 
-void Laws::memory(const Point& p, double sign, LawValues& out) noexcept {
+void Laws::memory(const Point& p, LawValues& out) noexcept {
   const double y = p.deflection_m;
   if (!any_) {
     any_ = true;
@@ -89,12 +89,15 @@ void Laws::memory(const Point& p, double sign, LawValues& out) noexcept {
     zeta_[i] = towards + (zeta_[i] - towards) * kept;
     out[kDahl + at(i)] = single(zeta_[i]);
   }
+  double whole = 0.0;  // of an end's force, at this speed
   for (std::size_t i = 0; i < kBacklashGaps; ++i) {
-    const double gap_m = grids_.backlash_gap[i] * grids_.scale_m;
+    const PlayShape& play = grids_.play[i];
+    if (i % kFineGaps == 0) whole = std::abs(smooth_sign(p.velocity_mps, play.width_mps));
+    const double gap_m = play.gap * grids_.scale_m;
     piston_m_[i] = std::clamp(piston_m_[i], y - 0.5 * gap_m, y + 0.5 * gap_m);
     const double left_m = 0.5 * gap_m - towards * (y - piston_m_[i]);  // still to go to the end
     const double engaged = std::clamp(1.0 - left_m / (kEngagedOver * gap_m), 0.0, 1.0);
-    out[kBacklash + at(i)] = single(engaged * towards * std::abs(sign));
+    out[kBacklash + at(i)] = single(engaged * towards * whole);
   }
   relax(step_m, out);
 }
@@ -113,7 +116,7 @@ LawValues Laws::operator()(const Point& point) noexcept {
   pitch_.update(point.velocity_mps, point.turn_mps2);
   friction(point, out);
   stiffness(point.deflection_m, out);
-  memory(point, smooth_sign(point.velocity_mps, kInnerWidthMps), out);
+  memory(point, out);
   return out;
 }
 

@@ -83,7 +83,7 @@ class Laws {
  private:
   void friction(const Point& point, LawValues& out) const noexcept;
   void stiffness(double deflection_m, LawValues& out) const noexcept;
-  void memory(const Point& point, double sign, LawValues& out) noexcept;
+  void memory(const Point& point, LawValues& out) noexcept;
   void relax(double step_m, LawValues& out) noexcept;
 
   Grids grids_;

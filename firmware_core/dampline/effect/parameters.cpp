@@ -15,6 +15,8 @@ constexpr double kFarthest = 1.5;  // steps of a grid that a derivative reaches
 /// itself is nobody's.
 constexpr double kHalfForce = 1.0 - 0.5 * kEngagedOver;
 
+constexpr double kEndShare = 0.25;  // of how far an end yields: what the gap's end is out by
+
 /// What the scatter of the entries does not show, of the value: errors that the motion's own error
 /// and the shape of a law near its kinks leave alike in every record. Of friction, spring, the
 /// law's size, and its length, speed or frequency. A pitch's law is one of short steps, and a lower
@@ -153,13 +155,19 @@ Uncertain by_steps(double value, double step, const Uncertain& moved) noexcept {
   value *= std::exp(step * moved.value);
   return {value, value * step * moved.slope};
 }
+/// The same from point i of lines of so many points; `at` gives a point's value.
+template <class At>
+Uncertain in_line(const At& at, std::size_t i, std::size_t line, const Uncertain& moved) noexcept {
+  const std::size_t first = i / line * line;
+  const std::size_t below = moved.value >= 0.0 || i == first ? i : i - 1;
+  const std::size_t low = std::min(below, first + line - 2);
+  return by_steps(at(i), std::log(at(low + 1) / at(low)), moved);
+}
 /// The same from point i of a grid.
 template <std::size_t N>
 Uncertain on_grid(const std::array<double, N>& grid, std::size_t i, const Uncertain& moved,
                   double unit) noexcept {
-  const bool up = moved.value >= 0.0;
-  const std::size_t low = std::min(up ? i : std::max<std::size_t>(i, 1) - 1, N - 2);
-  return by_steps(unit * grid[i], std::log(grid[low + 1] / grid[low]), moved);
+  return in_line([&](std::size_t each) { return unit * grid[each]; }, i, N, moved);
 }
 
 /// What multiplies every coefficient. With a mass on the frame that is the frame's own share of all
@@ -195,6 +203,15 @@ Uncertain level(const Model& model, const ModelFit& fit) noexcept {
     term += static_cast<int>(c.count);
   }
   return own_share(model, fit) * out;
+}
+
+/// What friction without a history is below zero beside a play: none drives. Ends that yield look
+/// so.
+double driving(const Model& model, const ModelFit& fit) noexcept {
+  const auto* const end = model.effect.begin() + model.count;
+  const bool plays = std::any_of(model.effect.begin(), end,
+                                 [](const Candidate& c) { return c.effect == Effect::kBacklash; });
+  return plays ? std::max(-fit.theta[ModelFit::kCoulomb], 0.0) : 0.0;
 }
 
 Uncertain spring(const Model& model, const ModelFit& fit) noexcept {
@@ -274,6 +291,19 @@ void describe_damping(const Part& p, double mass_kg, List& list, Step& step) noe
   }
 }
 
+/// An end that yields gives the gap itself no sharp end.
+void describe_gap(const Part& p, List& list, Step& step) noexcept {
+  const auto& play = p.grids.play;
+  const std::size_t v = p.candidate.variant;
+  const auto gap_m = [&](std::size_t i) { return kHalfForce * p.grids.scale_m * play[i].gap; };
+  const std::size_t line = std::min(line_of(Effect::kBacklash, false, p.grids), kBacklashGaps);
+  const double ratio = std::log(play.back().width_mps / play.front().width_mps);
+  const double width_mps = by_steps(play[v].width_mps, ratio, p.moved(1)).value;
+  const double yields_m = end_yields_m(width_mps, (p.own * p.sum()).value);
+  list.put(step, "backlash_gap", in_line(gap_m, v, line, p.moved(0)), "m",
+           std::hypot(p.errors().place, kEndShare * yields_m / gap_m(v)));
+}
+
 void describe_friction(const Part& p, double mass_kg, List& list, Step& step) noexcept {
   const Uncertain friction = Uncertain::of(p.fit, ModelFit::kCoulomb);
   const Uncertain force = mass_kg * (p.own * p.sum());
@@ -294,9 +324,7 @@ void describe_friction(const Part& p, double mass_kg, List& list, Step& step) no
                       on_grid(p.grids.dahl_distance, v, moved, unit_m), "m", p.errors().place);
     case Effect::kBacklash:
       list.put(step, "backlash_force", force, "N", p.errors().size);
-      return list.put(step, "backlash_gap",
-                      on_grid(p.grids.backlash_gap, v, moved, kHalfForce * unit_m), "m",
-                      p.errors().place);
+      return describe_gap(p, list, step);
     default:
       return;
   }
@@ -325,10 +353,8 @@ void describe_stiffness(const Part& p, double mass_kg, List& list, Step& step) n
 void describe_mode(const Part& p, double mass_kg, List& list, Step& step) noexcept {
   const std::size_t v = p.candidate.variant;
   if (p.candidate.form == kPitchForm) {
-    const std::size_t line = v / kPitchFrequencies * kPitchFrequencies;
     const auto hz = [&](std::size_t i) { return p.grids.pitch[i].frequency_hz; };
-    list.put(step, "unmodelled_mode_frequency",
-             by_steps(hz(v), std::log(hz(line + 1) / hz(line)), p.moved(0)), "Hz",
+    list.put(step, "unmodelled_mode_frequency", in_line(hz, v, kPitchFrequencies, p.moved(0)), "Hz",
              p.errors().place);
     return list.put(step, "unmodelled_mode_force", mass_kg * (p.own * p.coefficient()), "N",
                     p.errors().coulomb);
@@ -337,9 +363,8 @@ void describe_mode(const Part& p, double mass_kg, List& list, Step& step) noexce
   const Uncertain ratio = -1.0 * p.sum();
   const auto hz = [&](std::size_t i) { return p.grids.flexible[i].frequency_hz; };
   const std::size_t line = line_of(p.candidate.effect, false, p.grids);
-  const std::size_t low = v % line + 1 < line ? v : v - 1;
-  list.put(step, "unmodelled_mode_frequency",
-           by_steps(hz(v), std::log(hz(low + 1) / hz(low)), p.moved(0)), "Hz", p.errors().place);
+  list.put(step, "unmodelled_mode_frequency", in_line(hz, v, line, p.moved(0)), "Hz",
+           p.errors().place);
   list.put(step, "unmodelled_mode_mass", mass_kg * (ratio / (Uncertain{1.0} + ratio)), "kg",
            p.errors().size);
 }
@@ -368,10 +393,12 @@ void describe_rest(const Part& p, double mass_kg, List& list, Step& step) noexce
 BaseParameters base_in(const Detail& d, List& list) noexcept {
   const Uncertain all = d.mass_kg * spring(d.model, d.fit);
   const Uncertain slow = d.mass_kg * spring(d.model, d.slow);
-  const LawErrors errors = errors_beside(d.model);
+  LawErrors errors = errors_beside(d.model);
   list.add("stiffness", all);
   list.add("law_width", Uncertain::of(d.fit, ModelFit::kWidthChange));
-  const Uncertain friction = d.mass_kg * level(d.model, d.fit);
+  const double driving_n = d.mass_kg * driving(d.model, d.fit);
+  const Uncertain friction = Uncertain{driving_n} + d.mass_kg * level(d.model, d.fit);
+  errors.coulomb = std::hypot(errors.coulomb, driving_n / friction.value);
   // Of the friction, what has a width of v = 0; memory has none.
   const double jumps = d.mass_kg * d.fit.theta[ModelFit::kCoulomb] / friction.value;
   const double width_mps = d.fit.width_mps * std::sqrt(std::clamp(jumps, 0.0, 1.0));

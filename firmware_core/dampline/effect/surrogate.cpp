@@ -29,6 +29,11 @@ double given_back(const SurrogateConfig& config, double f_hz) {
   return std::min(std::sqrt(butterworth_loss(f_hz / config.input_low_pass_hz, 4)), kMostGivenBack);
 }
 
+/// Over what the force of an end rises.
+double ramp_of(const FrictionMemory& memory) {
+  return std::max(kRamp * memory.length_m, end_yields_m(memory.width_mps, memory.force_mps2));
+}
+
 bool is_number(const Sample& sample) {
   return std::all_of(sample.accel_mps2.begin(), sample.accel_mps2.end(),
                      [](double a) { return std::isfinite(a); });
@@ -39,10 +44,11 @@ bool is_number(const Sample& sample) {
 Surrogate::Surrogate(const SurrogateConfig& config)
     : config_{config},
       finds_{config.found != FoundForce{}},
+      ramp_m_{ramp_of(config.memory)},
       filter_{filter_of(config, kFine)},
       noise_{config.seed, kStream} {
   set_taps();
-  if (config.memory.is_play) config_.memory.length_m /= 1.0 - 0.5 * kRamp;
+  if (config.memory.is_play) config_.memory.length_m += 0.5 * ramp_m_;
   const double sliding_mps2 =
       config.coulomb_mps2 + (config.memory.is_play ? config.memory.force_mps2 : 0.0);
   const double slope = 2.0 * sliding_mps2 / kLawWidthMps;
@@ -83,7 +89,7 @@ double Surrogate::remembered(const Motion& m) const noexcept {
   if (!law.is_play) return m.zeta;
   const double travelled_m =
       std::copysign(1.0, m.velocity_mps) * (m.deflection_m - piston_m_) + 0.5 * law.length_m;
-  const double share = 1.0 - (law.length_m - travelled_m) / (kRamp * law.length_m);
+  const double share = 1.0 - (law.length_m - travelled_m) / ramp_m_;
   return std::clamp(share, 0.0, 1.0) * std::tanh(m.velocity_mps / kLawWidthMps);
 }
 

@@ -16,6 +16,7 @@ struct FrictionMemory {
   bool is_play{false};
   double force_mps2{0.0};  ///< per unit of mass, in steady sliding; 0: none
   double length_m{0.0};    ///< of a play: to where half the force is there
+  double width_mps{0.0};   ///< of a play: PlayShape
 };
 
 /// What else was found of the suspension's force, per unit of mass. Zeros: nothing.
@@ -88,6 +89,7 @@ class Surrogate {
 
   SurrogateConfig config_;
   bool finds_;
+  double ramp_m_;
   std::array<std::array<double, kTaps>, kFine + 1> taps_{};
   int parts_{1};  // of the law's steepest slope, in each fine step
   ButterworthLowPass<kChannels> filter_;
