@@ -28,7 +28,7 @@ constexpr double kChangeOfMotion = 0.06;
 constexpr double kLeastEntryS = 3.0;  // one block alone has no friction and spring of its own
 // A mass moves the frame by a quarter as much at 1.2 Hz, and the other way round.
 constexpr double kGainNotMass = 0.4;
-constexpr double kFollowSignificant = 2.0;  // deviations: no load changes on the way
+constexpr double kGainExcluded = 2.0;  // deviations: no load changes on the way
 // Of the live alarm.
 constexpr double kMostOfThreshold = 1.0 / 3.0;  // that one group adds: no alarm from one or two
 constexpr double kLeastShare = 0.5;             // of the other's change: both are the mass
@@ -246,9 +246,10 @@ void hold_against_faults(FaultView& faults, ParameterDrift& drift) noexcept {
   const double more = drift.step ? follow.step : follow.trend;
   const double sure = drift.step ? follow.step_significance : follow.trend_significance;
   const double gain = -drift.change.value;
-  const bool is_gain = drift.parameter == DriftingParameter::kMass &&
-                       more * gain > kGainNotMass * gain * gain &&
-                       std::abs(sure) > kFollowSignificant;
+  const double std = sure != 0.0 ? std::abs(more / sure) : 0.0;
+  const bool is_gain =
+      drift.parameter == DriftingParameter::kMass && std > 0.0 &&
+      (more * gain > kGainNotMass * gain * gain || std::abs(more - gain) < kGainExcluded * std);
   if (is_gain && faults.count < faults.faults.size())
     faults.faults[faults.count++] = {.kind = FaultKind::kGainChange,
                                      .channel = FaultChannel::kFrame,
