@@ -155,6 +155,19 @@ TEST(Rules, ALateChannelThatWasSetRightHidesNothing) {
   EXPECT_EQ(judge_step(Model{}.with(late), false, true, mode), Verdict::kYes);
 }
 
+TEST(Rules, WhatTwoChannelsThatWereSetRightLeaveLooksLikeMemory) {
+  Candidate late;
+  late.effect = Effect::kTimeSkew;  // without a column
+  Candidate other = late;
+  other.form = kWheelset1Form;
+  const Model one = Model{}.with(late);
+  for (const auto& [gain, beside_two] : {std::pair{0.055, false}, std::pair{0.065, true}}) {
+    const Step memory = step(Effect::kPreslidingHysteresis, gain, 10.0, 25.0);
+    EXPECT_EQ(judge_step(one, false, true, memory), Verdict::kYes);
+    EXPECT_EQ(judge_step(one.with(other), false, true, memory) == Verdict::kYes, beside_two);
+  }
+}
+
 TEST(Rules, ASecondLateChannelMustGainMoreThanTheFirstLeaves) {
   EXPECT_EQ(later(Effect::kTimeSkew, step(Effect::kTimeSkew, 0.05, 10.0, 25.0)), Verdict::kStop);
   EXPECT_EQ(later(Effect::kTimeSkew, step(Effect::kTimeSkew, 0.07, 10.0, 25.0)), Verdict::kYes);

@@ -93,9 +93,19 @@ bool lacks_product(const Model& model) noexcept {
          has_any(model, [](Effect effect) { return effect == Effect::kProgressiveFriction; });
 }
 
+/// Two late channels that were set right share what the third is off by between them, and friction
+/// that builds up takes what that leaves.
+bool are_two_set_right(const Model& model) noexcept {
+  const auto* const end = model.effect.begin() + model.count;
+  return std::count_if(model.effect.begin(), end, [](const Candidate& c) {
+           return c.effect == Effect::kTimeSkew && c.count == 0;
+         }) > 1;
+}
+
 double later_gain(const Model& model, const Candidate& candidate) noexcept {
   const bool springs = is_even_spring(candidate.effect) || is_bent_spring(candidate.effect);
   double gain = springs && lacks_product(model) ? kProductGain : kLaterGain;
+  if (has_memory(candidate.effect) && are_two_set_right(model)) gain = kLookalikeGain;
   for (std::size_t i = 0; i < model.count; ++i)
     gain = std::max(gain, gain_beside(model.effect[i], candidate));
   return gain;
