@@ -10,7 +10,7 @@ namespace dampline {
 namespace {
 
 constexpr std::size_t kJitterBlocks = 6;   // that tell
-constexpr double kJitterSure = 8.0;        // deviations; records without jitter reach 1.6
+constexpr double kJitterSure = 6.0;        // deviations; records without jitter reach 4
 constexpr int kSureBlocks = 2;             // in a row
 constexpr double kLeastJitterS = 5e-5;     // rms
 constexpr double kFewestCompared = 300.0;  // samples of a block
