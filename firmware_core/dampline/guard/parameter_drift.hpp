@@ -41,7 +41,8 @@ struct ParameterDrift {
 
 /// What a fault does to the parameters is no change of theirs: where samples of a channel moved in
 /// time, or a gain changed, none is found. A mass that seems to change while the frame moves as
-/// much more with the wheelsets is a gain of the frame's sensor: it joins the faults.
+/// much more with the wheelsets, or may do so, is a gain of the frame's sensor: it joins the
+/// faults.
 void hold_against_faults(FaultView& faults, ParameterDrift& drift) noexcept;
 
 /// Level of friction and stiffness of the newest blocks alone, from how the sums over all blocks
