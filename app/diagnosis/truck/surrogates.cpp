@@ -94,8 +94,8 @@ void add(const Parts& p, double coulomb_mps2, effect::SurrogateConfig& out) {
     case Effect::kPreslidingHysteresis:
     case Effect::kBacklash:
       if (out.memory.force_mps2 > 0.0) return;
-      out.memory = {kind == Effect::kBacklash, p.force(0), p.plain(1),
-                    effect::play_of(p.step, p.grids).width_mps};
+      out.memory = {kind == Effect::kBacklash, p.force(0), p.plain(1)};
+      if (out.memory.is_play) out.memory.width_mps = effect::play_of(p.step, p.grids).width_mps;
       out.coulomb_mps2 = std::max(out.coulomb_mps2 - out.memory.force_mps2, 0.0);
       return;
     case Effect::kViscous:

@@ -46,6 +46,13 @@ struct Model {
     --out.count;
     return out;
   }
+  /// How many of its effects pass a test of a Candidate.
+  template <class Test>
+  [[nodiscard]] std::size_t count_of(const Test& test) const noexcept {
+    std::size_t out = 0;
+    for (std::size_t i = 0; i < count; ++i) out += test(effect[i]) ? 1U : 0U;
+    return out;
+  }
 };
 
 /// Two for each effect, of which one mode, which may have three, and one that has a single one.

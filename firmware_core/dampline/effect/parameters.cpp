@@ -208,10 +208,8 @@ Uncertain level(const Model& model, const ModelFit& fit) noexcept {
 /// What friction without a history is below zero beside a play: none drives. Ends that yield look
 /// so.
 double driving(const Model& model, const ModelFit& fit) noexcept {
-  const auto* const end = model.effect.begin() + model.count;
-  const bool plays = std::any_of(model.effect.begin(), end,
-                                 [](const Candidate& c) { return c.effect == Effect::kBacklash; });
-  return plays ? std::max(-fit.theta[ModelFit::kCoulomb], 0.0) : 0.0;
+  const auto is_play = [](const Candidate& c) { return c.effect == Effect::kBacklash; };
+  return model.count_of(is_play) > 0 ? std::max(-fit.theta[ModelFit::kCoulomb], 0.0) : 0.0;
 }
 
 Uncertain spring(const Model& model, const ModelFit& fit) noexcept {

@@ -39,9 +39,7 @@ constexpr std::size_t kManyEntries = 16;  // of blocks, with which the rules wer
 
 template <class Test>
 bool has_any(const Model& model, const Test& test) noexcept {
-  const auto end = model.effect.begin() + static_cast<std::ptrdiff_t>(model.count);
-  return std::any_of(model.effect.begin(), end,
-                     [&](const Candidate& candidate) { return test(candidate.effect); });
+  return model.count_of([&](const Candidate& candidate) { return test(candidate.effect); }) > 0;
 }
 
 bool is_even_spring(Effect effect) noexcept {
@@ -96,10 +94,8 @@ bool lacks_product(const Model& model) noexcept {
 /// Two late channels that were set right share what the third is off by between them, and friction
 /// that builds up takes what that leaves.
 bool are_two_set_right(const Model& model) noexcept {
-  const auto* const end = model.effect.begin() + model.count;
-  return std::count_if(model.effect.begin(), end, [](const Candidate& c) {
-           return c.effect == Effect::kTimeSkew && c.count == 0;
-         }) > 1;
+  return model.count_of(
+             [](const Candidate& c) { return c.effect == Effect::kTimeSkew && c.count == 0; }) > 1;
 }
 
 double later_gain(const Model& model, const Candidate& candidate) noexcept {
