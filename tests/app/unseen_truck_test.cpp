@@ -135,6 +135,15 @@ TEST(UnseenTruck, OfABacklashThatYieldsHasNoLateFrame) {
   EXPECT_EQ(s.names(), "backlash ");
 }
 
+// Friction that falls with speed, of a truck that is light, was two late wheelsets and a mode,
+// which left half as much again as sensors make: without them nothing is left.
+TEST(UnseenTruckNightly, WhoseFrictionFallsHasNoLateWheelsets) {
+  const Seen s = seen(1066, 420.0);
+  EXPECT_STREQ(s.truck.truck.name, "stribeck");
+  EXPECT_EQ(s.names(), "stribeck ");
+  for (const auto& [name, truth] : s.truck.truths) expect_within(s, name, truth);
+}
+
 // Damped by as much again as by friction, which hardly lets it move: damping of -0.8 MN s/m beside
 // a relaxing spring of 1.1 GN/m, two late wheelsets and a level 18 % low were "trusted".
 TEST(UnseenTruckNightly, ThatHardlyMovesHasItsDamping) {

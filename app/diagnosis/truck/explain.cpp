@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -72,6 +73,22 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
     hold_back(out);
     if (!take_needless(out.explanation, out.needless)) return;
   }
+}
+
+/// Friction of a truck that hardly moves can look like two late channels, which then leave
+/// something: none is late where the record as it was read leaves less, and that is no more than
+/// sensors make.
+void doubt_lateness(Reading& reading, const TruckPass& pass, Explained& out) {
+  const effect::Explanation& e = out.explanation;
+  const bool any_late = std::any_of(e.step.data(), e.step.data() + e.step_count, is_late);
+  if (!any_late || out.withheld || out.drifts) return;
+  if (conclusion_of(out) != effect::Conclusion::kPartlyExplained) return;
+  Explained punctual = out;
+  punctual.needless = {};
+  punctual.needless.effect[static_cast<std::size_t>(effect::Effect::kTimeSkew)] = true;
+  explain_pass(reading, pass, punctual);
+  const bool whole = conclusion_of(punctual) == effect::Conclusion::kExplained;
+  if (whole && left_nmse(punctual) < left_nmse(out)) out = std::move(punctual);
 }
 
 /// The truck under the other end of the body: the record is explained anew with what its frame
@@ -173,6 +190,7 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
   pass.feed->describe(pass.run->frames(), out.identified);
   out.circumstances = pass.run->circumstances();
   explain_pass(reading, pass, out);
+  doubt_lateness(reading, pass, out);
   look_for_other(reading, pass, out);
   if (options.refine && shows_no_gain(config, options.source, out)) {
     out.needless.effect[static_cast<std::size_t>(effect::Effect::kGainError)] = true;
