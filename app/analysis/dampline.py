@@ -167,11 +167,11 @@ _LONG_SCALES = 4
 _BENDS = 0.15, 0.25
 _STICKING = (0.05, 0.12), (0.32, 0.18)
 # The velocity's own error: widths of exact sensors' law, m/s and m/s Hz^3; what goes with the part
-# between samples below so many Hz; bias of level and stiffness for each unit of the share, and how
-# well it is known.
+# between samples below so many Hz; bias of level and stiffness for each unit of the share; and what
+# of each is not known.
 _EXACT_WIDTH = 1.9e-3, 1.0e4
-_LOST, _AMPLE_HZ = 0.004, 300.0
-_LEVEL_BIAS, _STIFFNESS_BIAS = (0.20, 0.40), (0.30, 1.0)
+_LOST, _AMPLE_HZ = (0.0055, 0.7), 300.0
+_LEVEL_BIAS, _STIFFNESS_BIAS = (0.27, 0.30), (0.30, 1.0)
 
 Factors = collections.namedtuple("Factors", "factor rows blocks")
 Factors.__doc__ = """Of one stretch: `factor` (5, 21, 21), the upper triangles R of the scales; `rows`
@@ -205,10 +205,10 @@ class State:
         share, lost = self._velocity_error(width)
         bias = _LEVEL_BIAS[0] * share
         level, level_std = _corrected(level, level_std, (1.0 + lost) / (1.0 + bias),
-                                      np.hypot(_LEVEL_BIAS[1] * bias, lost))
+                                      np.hypot(_LEVEL_BIAS[1] * bias, _LOST[1] * lost))
         bias = _STIFFNESS_BIAS[0] * share
         stiffness, stiffness_std = _corrected(stiffness, stiffness_std, 1.0 + bias,
-                                              np.hypot(_STIFFNESS_BIAS[1] * bias, lost))
+                                              np.hypot(_STIFFNESS_BIAS[1] * bias, _LOST[1] * lost))
         k = moving_mass_kg * ratio**2
         out = {"coulomb": Estimate(moving_mass_kg * level, moving_mass_kg * level_std, "N"),
                "stiffness": Estimate(k * stiffness, k * stiffness_std, "N/m")}
@@ -234,7 +234,7 @@ class State:
         level goes with the velocity's part between samples."""
         exact = _EXACT_WIDTH[0] + _EXACT_WIDTH[1] / self.sample_rate_hz**3
         share = max(width_mps**2 - exact**2, 0.0) / self.velocity_rms_mps**2
-        return share, _LOST * max((_AMPLE_HZ / self.sample_rate_hz)**2 - 1.0, 0.0)
+        return share, _LOST[0] * max((_AMPLE_HZ / self.sample_rate_hz)**2 - 1.0, 0.0)
 
     def _level(self, law, std, viscous):
         """The level of the law, or, the more the truck sticks, of the bent one, and its deviation."""

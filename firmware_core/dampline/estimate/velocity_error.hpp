@@ -12,7 +12,7 @@ namespace dampline {
 /// Friction is taken as that of the velocity that was measured. Noise, rounding and jitter put some
 /// of it beside its sign: the level then comes out too high, the spring too soft, alike in every
 /// record, so that the scatter of the blocks does not show it. The law's width w does: with w0 of
-/// exact sensors and the motion's rms velocity, the level is some 20 % of the share
+/// exact sensors and the motion's rms velocity, the level is some 27 % of the share
 /// x = (w^2 - w0^2) / v_rms^2 too high, and the spring 0 to 60 % of it too low, the more the more
 /// it is the frame that errs. Below 300 samples a second the velocity lacks its fastest part, and
 /// the level comes out too low. Study: docs/adr/0019-velocity-error.md.
@@ -31,19 +31,22 @@ struct VelocityError {
   }
 
   [[nodiscard]] Estimate coulomb(const Estimate& e, double law_width_mps) const noexcept {
-    constexpr double kTooHigh = 0.20;
-    constexpr double kMoreOrLess = 0.40;  // of that
+    constexpr double kTooHigh = 0.27;
+    constexpr double kMoreOrLess = 0.30;  // of that
     const double bias = kTooHigh * share(law_width_mps);
-    return corrected(e, (1.0 + lost()) / (1.0 + bias), std::hypot(kMoreOrLess * bias, lost()));
+    return corrected(e, (1.0 + lost()) / (1.0 + bias),
+                     std::hypot(kMoreOrLess * bias, kLostMoreOrLess * lost()));
   }
 
   [[nodiscard]] Estimate stiffness(const Estimate& e, double law_width_mps) const noexcept {
     constexpr double kTooLow = 0.30;
     const double bias = kTooLow * share(law_width_mps);
-    return corrected(e, 1.0 + bias, std::hypot(bias, lost()));
+    return corrected(e, 1.0 + bias, std::hypot(bias, kLostMoreOrLess * lost()));
   }
 
  private:
+  static constexpr double kLostMoreOrLess = 0.7;
+
   [[nodiscard]] bool is_known() const noexcept {
     return sample_rate_hz > 0.0 && velocity_rms_mps > 0.0;
   }
@@ -51,7 +54,7 @@ struct VelocityError {
   /// Of the level, what goes with the velocity's part between the samples.
   [[nodiscard]] double lost() const noexcept {
     constexpr double kAmpleHz = 300.0;
-    constexpr double kLost = 0.004;
+    constexpr double kLost = 0.0055;
     if (!is_known()) return 0.0;
     const double ratio = kAmpleHz / sample_rate_hz;
     return kLost * std::max(ratio * ratio - 1.0, 0.0);

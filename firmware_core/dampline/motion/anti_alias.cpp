@@ -23,6 +23,27 @@ double lift(double relative, int order, double share, double beyond) noexcept {
   return std::pow(loss, share) * (0.5 + 0.5 * std::cos(kPi * beyond));
 }
 
+/// Phase of a Butterworth filter beside that of its delay, rad, from its poles.
+double phase_beside_delay(double relative, int order) noexcept {
+  double phase = relative / std::sin(kPi / (2.0 * order));
+  for (int k = 0; k < order; ++k) {
+    const double angle = kPi * (2.0 * k + 1.0) / (2.0 * order);
+    const double real = std::sin(angle);
+    const double imaginary = std::cos(angle);
+    phase -= std::atan2(relative - imaginary, real) + std::atan2(imaginary, real);
+  }
+  return phase;
+}
+
+/// What is undone of the phase that the fast parts get by a filter below the usual one.
+double phase_undone(double hz, const AntiAliasConfig& filter) noexcept {
+  constexpr double kShare = 0.8;
+  constexpr AntiAliasConfig kUsual{};
+  if (!(filter.corner_hz < kUsual.corner_hz)) return 0.0;
+  return kShare * (phase_beside_delay(hz / kUsual.corner_hz, kUsual.order) -
+                   phase_beside_delay(hz / filter.corner_hz, filter.order));
+}
+
 }  // namespace
 
 double VelocityLift::share_of_loss(const AntiAliasConfig& filter) noexcept {
@@ -30,9 +51,11 @@ double VelocityLift::share_of_loss(const AntiAliasConfig& filter) noexcept {
   constexpr double kFolded = 0.60;
   constexpr double kHighCornerHz = 100.0;
   constexpr double kLowCornerHz = 76.0;
+  constexpr double kBeyond = 0.05;
   const double low =
-      std::clamp((kHighCornerHz - filter.corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0, 1.0);
-  return std::lerp(filter.thinned ? kThinned : kFolded, 1.0, low);
+      std::max((kHighCornerHz - filter.corner_hz) / (kHighCornerHz - kLowCornerHz), 0.0);
+  return std::lerp(filter.thinned ? kThinned : kFolded, 1.0, std::min(low, 1.0)) +
+         kBeyond * std::max(low - 1.0, 0.0);
 }
 
 VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz) noexcept {
@@ -41,25 +64,36 @@ VelocityLift::VelocityLift(const AntiAliasConfig& config, double sample_rate_hz)
   const double corner = config.corner_hz / sample_rate_hz;
   const double edge = std::fmin(corner, kHighestLifted);
   const double share = share_of_loss(config);
-  // Least squares over the cosines of a symmetric filter, exact at zero frequency.
+  // Least squares over cosines, exact at zero frequency, and for the phase over sines.
   using Basis = Eigen::Matrix<double, kHalf + 1, 1>;
-  Eigen::Matrix<double, kHalf + 1, kHalf + 1> normal;
-  normal.setConstant(kExactWeight);
+  using Normal = Eigen::Matrix<double, kHalf + 1, kHalf + 1>;
+  Normal even = Normal::Constant(kExactWeight);
+  Normal odd = Normal::Zero();
+  odd(0, 0) = 1.0;  // a sine of nothing
   Basis right = Basis::Constant(kExactWeight);
+  Basis right_odd = Basis::Zero();
   for (int i = 0; i < kGrid; ++i) {
     const double f = (i + 0.5) * 0.5 / kGrid;
     const double beyond = std::fmax(0.0, (f - edge) / (0.5 - edge));
     const double weight = beyond > 0.0 ? kOutOfBandWeight : 1.0;
-    Basis cosine;
-    for (int k = 0; k <= kHalf; ++k) cosine[k] = std::cos(2.0 * kPi * f * k);
-    normal += weight * cosine.lazyProduct(cosine.transpose());
-    right += weight * lift(f / corner, config.order, share, beyond) * cosine;
+    Basis cosine, sine;
+    for (int k = 0; k <= kHalf; ++k) {
+      cosine[k] = std::cos(2.0 * kPi * f * k);
+      sine[k] = std::sin(2.0 * kPi * f * k);
+    }
+    const double wanted = lift(f / corner, config.order, share, beyond);
+    const double phase = phase_undone(f * sample_rate_hz, config);
+    even += weight * cosine.lazyProduct(cosine.transpose());
+    right += weight * wanted * std::cos(phase) * cosine;
+    odd += weight * sine.lazyProduct(sine.transpose());
+    right_odd += weight * wanted * std::sin(phase) * sine;
   }
-  const Basis fit = solve_cholesky<kHalf + 1>(normal, right);
-  taps_[kHalf] = fit[0];
+  const Basis gain = solve_cholesky<kHalf + 1>(even, right);
+  const Basis turn = solve_cholesky<kHalf + 1>(odd, right_odd);
+  taps_[kHalf] = gain[0];
   for (int k = 1; k <= kHalf; ++k) {
-    taps_[static_cast<std::size_t>(kHalf + k)] = taps_[static_cast<std::size_t>(kHalf - k)] =
-        0.5 * fit[k];
+    taps_[static_cast<std::size_t>(kHalf + k)] = 0.5 * (gain[k] - turn[k]);
+    taps_[static_cast<std::size_t>(kHalf - k)] = 0.5 * (gain[k] + turn[k]);
   }
 }
 

@@ -61,16 +61,18 @@ struct WhiteAndFolded {
   [[nodiscard]] double mean() const noexcept { return wy / (w + kTiny); }
 };
 
-/// A short symmetric filter that lifts the fast part of the velocity which the anti-aliasing filter
-/// has lowered, by a share of the loss in decibels, up to the corner: 60 % at 100 Hz, 75 % where
-/// nothing is folded, more below, all of it from 76 Hz down, since wheelsets shake most between 45
-/// and 75 Hz.
+/// A short filter that lifts the fast part of the velocity which the anti-aliasing filter has
+/// lowered, by a share of the loss in decibels, up to the corner: 60 % at 100 Hz, 75 % where nothing
+/// is folded, more below, all of it and a little more from 76 Hz down, since wheelsets shake most
+/// between 45 and 75 Hz.
 ///
 /// What is linear in the accelerations commutes with the anti-aliasing filter and needs nothing;
 /// friction does not. Left alone, sign(v) of a velocity without its fast part puts the friction
 /// level 0.1 to 1.2 % low (100 Hz at 300 samples a second); lifted by the whole loss, up to 0.7 %
-/// high. Phase is left as it is: undoing it biases stiffness by 0.5 to 2 %, because the filter's
-/// delay of fast parts offsets the delay that smoothing gives to the kinks of v at its reversals.
+/// high. Phase is left as it is at 100 Hz: undoing it biases stiffness by 0.5 to 2 %, because the
+/// filter's delay of fast parts offsets the delay that smoothing gives to the kinks of v at its
+/// reversals. Of what a lower filter delays them beyond that, 80 % are undone; left alone it puts
+/// the spring 1.5 % too stiff at 60 Hz.
 /// Figures and method: docs/adr/0003-anti-alias.md.
 class VelocityLift {
  public:
