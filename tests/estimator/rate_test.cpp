@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -72,7 +73,9 @@ TEST_P(IdentifierAtRate, FindsThePrescribedParameters) {
   ASSERT_TRUE(Estimator::check(config).ok());
   const Snapshot s = identify(prescribed(GetParam(), 100.0), config).snapshot;
   ASSERT_TRUE(s.valid);
-  EXPECT_NEAR(s.coulomb_n.value / kCoulombN, 1.0, 0.015);
+  // What a truck's velocity has between slow samples is put back; this one has nothing there.
+  const double put_back = 0.0055 * std::max(std::pow(300.0 / GetParam(), 2) - 1.0, 0.0);
+  EXPECT_NEAR(s.coulomb_n.value / kCoulombN, 1.0 + put_back, 0.005);
   EXPECT_NEAR(s.stiffness_npm.value / kStiffnessNpm, 1.0, 0.03);
   EXPECT_EQ(s.counts.blocks, 50U);
   EXPECT_GE(s.blocks_in_estimate, 46U);
