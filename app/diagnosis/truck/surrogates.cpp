@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kOneKind = 3.0;      // of powers of noise
 constexpr double kNoiseDoubt = 1.25;  // of the guards' median, which bursts do not lift
+// Of the floor, where it is known less well than elsewhere: what is unexplained.
+constexpr double kThinnedAbove = 1.35;
+constexpr double kFoldedAbove = 1.6;
+constexpr double kMuchFolded = 0.38;  // a corner, of the rate
 
 double rounding(double step_mps2) { return step_mps2 * step_mps2 / 12.0; }  // mean square
 
@@ -36,6 +40,14 @@ double frame_of_their_kind(const std::array<double, kChannels>& seen_mps2,
     least = std::min(least, std::max(white, 0.0));
   }
   return std::sqrt(least + rounding(step_mps2[0]));
+}
+
+/// How far above its floor a sound record may be.
+double unexplained_above(const EstimatorConfig& core) {
+  const AntiAliasConfig seen = ReferenceLowPass::seen_behind(core.anti_alias);
+  if (seen.thinned) return kThinnedAbove;
+  return seen.corner_hz > kMuchFolded * core.sample_rate_hz ? kFoldedAbove
+                                                            : effect::kUnexplainedAbove;
 }
 
 }  // namespace
@@ -172,6 +184,7 @@ void take_shown(effect::Effect shown, Needless& needless) {
 void Surrogates::begin(const EstimatorConfig& core, const effect::SurrogateConfig& declared,
                        const effect::Explanation& e) {
   for (auto& pass : passes_) pass.reset();
+  unexplained_above_ = unexplained_above(core);
   if (!is_physical(declared)) return;
   effect::SurrogateConfig second = with_found(declared, e);
   finds_ = second.memory.force_mps2 > 0.0 || second.found != effect::FoundForce{};
@@ -194,6 +207,7 @@ bool Surrogates::hold_against(effect::Explainer& explainer, double rows, Explain
   effect::Explainer::Surrogates surrogates{first, finds_ ? nullptr : second,
                                            finds_ ? second : nullptr};
   if (rows > 0.0) surrogates.share = first.store().rows() / rows;
+  surrogates.unexplained_above = unexplained_above_;
   const bool judged = explainer.apply_floor(surrogates, out.identified.faults.impacts, e);
   if (!judged && steps > 0) explains_nothing(e);
   if (out.withheld || out.drifts) e.conclusion = conclusion;

@@ -100,6 +100,7 @@ class Surrogates {
  private:
   std::array<std::optional<SurrogatePass>, 2> passes_;
   bool finds_{false};
+  double unexplained_above_{effect::kUnexplainedAbove};
 };
 
 }  // namespace dampline::app

@@ -9,7 +9,6 @@
 namespace dampline::effect {
 namespace {
 
-constexpr double kUnexplainedAbove = 1.25;  // of the floor, without a single step
 constexpr double kUnexplainedAboveWithImpacts = 1.5;
 constexpr std::uint64_t kImpacts = 10;
 constexpr double kDrivesZ = 2.0;
@@ -57,9 +56,11 @@ bool is_possible(const Explanation& e) noexcept {
          std::none_of(e.step.begin(), end, drives);
 }
 
-void conclude(std::uint64_t impacts, Explanation& e) noexcept {
+void conclude(std::uint64_t impacts, Explanation& e, double unexplained_above) noexcept {
   const double ratio = is_possible(e) ? floor_ratio(e) : std::numeric_limits<double>::infinity();
-  const double limit = impacts >= kImpacts ? kUnexplainedAboveWithImpacts : kUnexplainedAbove;
+  const double limit = impacts >= kImpacts
+                           ? std::max(kUnexplainedAboveWithImpacts, unexplained_above)
+                           : unexplained_above;
   if (e.step_count == 0) {
     e.conclusion = ratio > limit ? Conclusion::kUnexplained : Conclusion::kComplete;
   } else {

@@ -68,9 +68,13 @@ struct Explanation {
 /// Above it, an effect is like what is missing, but its law is not complete.
 inline constexpr double kIncompleteAbove = 1.5;
 
+/// Of the floor: more that is left without a single step is unexplained.
+inline constexpr double kUnexplainedAbove = 1.25;
+
 /// Decides the conclusion from the steps and the floor; an impossible model explains nothing.
 /// `impacts`: blows in the input, which every model leaves a little of.
-void conclude(std::uint64_t impacts, Explanation& explanation) noexcept;
+void conclude(std::uint64_t impacts, Explanation& explanation,
+              double unexplained_above = kUnexplainedAbove) noexcept;
 
 /// The base and what was added to its law.
 [[nodiscard]] Model law_part(const Explanation& explanation) noexcept;

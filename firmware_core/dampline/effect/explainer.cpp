@@ -453,7 +453,7 @@ bool Explainer::apply_floor(const Surrogates& surrogates, std::uint64_t impacts,
                              : mean_of(e.weight, target);
   if (floor < 0.0) return false;
   e.floor_nmse = floor;
-  conclude(impacts, e);
+  conclude(impacts, e, surrogates.unexplained_above);
   return true;
 }
 
