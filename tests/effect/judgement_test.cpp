@@ -53,6 +53,22 @@ TEST(Judgement, AnImpossibleLawExplainsNothing) {
   EXPECT_FALSE(is_possible(e));
 }
 
+// A frame behind 30 Hz beside wheelsets behind 100: "backlash" of 13 +- 15 kN, where 6.5 stand.
+TEST(Conclusion, NoFrictionThatMayBeNothingBuildsUp) {
+  Explanation e = explained_by_one_effect(0.5);
+  e.final_coulomb_n = {13'000.0, 15'000.0};
+  e.final_stiffness_npm = {5e6, 2e4};
+  for (const auto& [effect, possible] :
+       {std::pair{Effect::kBacklash, false}, std::pair{Effect::kPreslidingHysteresis, false},
+        std::pair{Effect::kViscous, true}, std::pair{Effect::kViscoelastic, true}}) {
+    e.step[0].chosen.effect = effect;
+    EXPECT_EQ(is_possible(e), possible) << name_of(effect);
+  }
+  e.final_coulomb_n.std = 6'000.0;
+  e.step[0].chosen.effect = Effect::kBacklash;
+  EXPECT_TRUE(is_possible(e));
+}
+
 TEST(Conclusion, AModelIsPossibleWithFrictionAndASpringAboveNothing) {
   Explanation e;
   for (const auto& [coulomb, stiffness, possible] :

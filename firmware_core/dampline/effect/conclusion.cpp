@@ -12,6 +12,7 @@ namespace {
 constexpr double kUnexplainedAboveWithImpacts = 1.5;
 constexpr std::uint64_t kImpacts = 10;
 constexpr double kDrivesZ = 2.0;
+constexpr double kOfNothingZ = 2.0;
 
 /// Damping that surely gives energy.
 bool drives(const Step& step) noexcept {
@@ -52,7 +53,12 @@ double floor_ratio(const Explanation& e) noexcept {
 
 bool is_possible(const Explanation& e) noexcept {
   const auto end = e.step.begin() + static_cast<std::ptrdiff_t>(e.step_count);
-  return e.final_coulomb_n.value > 0.0 && e.final_stiffness_npm.value > 0.0 &&
+  const Estimate& level = e.final_coulomb_n;
+  const bool of_nothing = level.value < kOfNothingZ * level.std &&
+                          std::any_of(e.step.begin(), end, [](const Step& step) {
+                            return has_memory(step.chosen.effect);
+                          });
+  return level.value > 0.0 && e.final_stiffness_npm.value > 0.0 && !of_nothing &&
          std::none_of(e.step.begin(), end, drives);
 }
 
