@@ -53,7 +53,8 @@ TEST(Judgement, AnImpossibleLawExplainsNothing) {
   EXPECT_FALSE(is_possible(e));
 }
 
-// A frame behind 30 Hz beside wheelsets behind 100: "backlash" of 13 +- 15 kN, where 6.5 stand.
+// As a frame behind 30 Hz beside wheelsets behind 100 had: "backlash" of 2.7 +- 1.8 times its
+// level.
 TEST(Conclusion, NoFrictionThatMayBeNothingBuildsUp) {
   Explanation e = explained_by_one_effect(0.5);
   e.final_coulomb_n = {13'000.0, 15'000.0};

@@ -63,8 +63,8 @@ struct Explanation {
 /// What is left over what a complete model leaves; 0 where that is unknown.
 [[nodiscard]] double floor_ratio(const Explanation& explanation) noexcept;
 /// Friction and spring of the final model are more than nothing, surely so of a friction that is
-/// said to build up, and what damps takes energy.
-/// Otherwise no floor can be computed, and no law of such a model is one of a suspension.
+/// said to build up, and what damps takes energy. Otherwise no floor can be computed, and no law of
+/// such a model is one of a suspension.
 [[nodiscard]] bool is_possible(const Explanation& explanation) noexcept;
 /// Above it, an effect is like what is missing, but its law is not complete.
 inline constexpr double kIncompleteAbove = 1.5;

@@ -60,7 +60,7 @@ class Explainer {
     const Diagnosis* other_noise{nullptr};  ///< the same once more: the floor is the mean of both
     /// The base law with what was found of it: the floor is what a model with both leaves of it.
     const Diagnosis* found{nullptr};
-    double share{1.0};  ///< of the record's rows that the surrogates have
+    double share{1.0};                            ///< of the record's rows that the surrogates have
     double unexplained_above{kUnexplainedAbove};  ///< of the floor that they give
   };
   /// What a complete model leaves, from the surrogate: a record of the base law simulated on the

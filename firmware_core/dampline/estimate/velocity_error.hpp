@@ -15,7 +15,8 @@ namespace dampline {
 /// exact sensors and the motion's rms velocity, the level is some 27 % of the share
 /// x = (w^2 - w0^2) / v_rms^2 too high, and the spring 0 to 60 % of it too low, the more the more
 /// it is the frame that errs. Below 300 samples a second the velocity lacks its fastest part, and
-/// the level comes out too low. Study: docs/adr/0019-velocity-error.md.
+/// the level comes out too low. Studies: docs/adr/0019-velocity-error.md,
+/// docs/adr/0024-low-corners.md.
 struct VelocityError {
   double sample_rate_hz{0.0};    ///< 0: unknown, and nothing is corrected
   double velocity_rms_mps{0.0};  ///< of the motion; 0: the same

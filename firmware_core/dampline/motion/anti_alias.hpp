@@ -62,9 +62,9 @@ struct WhiteAndFolded {
 };
 
 /// A short filter that lifts the fast part of the velocity which the anti-aliasing filter has
-/// lowered, by a share of the loss in decibels, up to the corner: 60 % at 100 Hz, 75 % where nothing
-/// is folded, more below, all of it and a little more from 76 Hz down, since wheelsets shake most
-/// between 45 and 75 Hz.
+/// lowered, by a share of the loss in decibels, up to the corner: 60 % at 100 Hz, 75 % where
+/// nothing is folded, more below, all of it and a little more from 76 Hz down, since wheelsets
+/// shake most between 45 and 75 Hz.
 ///
 /// What is linear in the accelerations commutes with the anti-aliasing filter and needs nothing;
 /// friction does not. Left alone, sign(v) of a velocity without its fast part puts the friction
@@ -73,7 +73,7 @@ struct WhiteAndFolded {
 /// filter's delay of fast parts offsets the delay that smoothing gives to the kinks of v at its
 /// reversals. Of what a lower filter delays them beyond that, 80 % are undone; left alone it puts
 /// the spring 1.5 % too stiff at 60 Hz.
-/// Figures and method: docs/adr/0003-anti-alias.md.
+/// Figures and method: docs/adr/0003-anti-alias.md, docs/adr/0024-low-corners.md.
 class VelocityLift {
  public:
   static constexpr int kHalf = 12;
