@@ -33,9 +33,10 @@ struct CanConfig {
   int receive_buffer_kib{4096};                    ///< of a live interface's socket
 };
 
-/// Anti-aliasing filter of the sensors: a Butterworth low-pass, the same in every channel.
+/// Anti-aliasing filters of the sensors: Butterworth low passes.
 struct AntiAliasInput {
-  double corner_hz{100.0};  ///< -3 dB; 0: none, or not known
+  double corner_hz{100.0};                                ///< -3 dB; 0: none, or not known
+  std::array<std::optional<double>, kChannels> own_hz{};  ///< where a channel's is another
   int order{4};
 };
 

@@ -55,6 +55,9 @@ constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end_accel", "f
 constexpr std::array<std::string_view, kChannels> kCounterKeys{"frame_counter", "wheelset1_counter",
                                                                "wheelset2_counter"};
 
+constexpr std::array<std::string_view, kChannels> kCornerKeys{
+    "frame_corner_hz", "wheelset1_corner_hz", "wheelset2_corner_hz"};
+
 using Fields = std::vector<Field>;
 
 void add_record(RecordLabels& record, Fields& out) {
@@ -119,6 +122,9 @@ void add_input(InputConfig& input, Fields& out) {
                  TextField{&input.leading, kLeadingWords}});
   out.push_back({"input.anti_alias", "corner_hz", "of the sensors' low-pass; 0: none, or unknown",
                  NumberField{&input.anti_alias.corner_hz, {0.0, 1e5}}});
+  for (std::size_t c = 0; c < kChannels; ++c)
+    out.push_back({"input.anti_alias", kCornerKeys[c], "of that sensor; absent: corner_hz",
+                   OptionalNumberField{&input.anti_alias.own_hz[c], {1.0, 1e5}, ""}});
   out.push_back({"input.anti_alias", "order", "of that Butterworth filter",
                  IntegerField{&input.anti_alias.order, {1.0, 8.0}}});
   for (std::size_t c = 0; c < kChannels; ++c)

@@ -8,17 +8,27 @@
 
 namespace dampline::app {
 
+inline constexpr double kLower = 0.85;     ///< times the declared: another one
 inline constexpr double kUsualHz = 100.0;  ///< above, corners are hardly told apart
+
+struct OtherLowPass {
+  FaultChannel channel;
+  double corner_hz;
+};
 
 /// Where the sensors' low pass seems to lie, Hz, where it is not as declared: behind it the base
 /// leaves clearly less of the record, held out, than `as_declared`, behind the declared one, and
 /// `left_nmse`, which the effects found there leave, if any were. Its phase and gain are put right
 /// before the estimate, so the wrong one leaves more; above 100 Hz that is hardly seen, and does
 /// not matter. Reads the record one to some times more. Throws RunError.
-[[nodiscard]] std::optional<double> other_low_pass_hz(const Config& config,
-                                                      const SourceOptions& source,
-                                                      double as_declared,
-                                                      std::optional<double> left_nmse);
+[[nodiscard]] std::optional<OtherLowPass> other_low_pass(const Config& config,
+                                                         const SourceOptions& source,
+                                                         double as_declared,
+                                                         std::optional<double> left_nmse);
+[[nodiscard]] std::optional<OtherLowPass> other_low_pass_of_wheelsets(const Config& config,
+                                                                      const SourceOptions& source,
+                                                                      double as_declared,
+                                                                      double left_nmse);
 
 /// Names a low pass that is not as declared in what identify says of a file whose numbers it
 /// trusts; they are trusted no more. Reads the first two minutes that can be used, once or some

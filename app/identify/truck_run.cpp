@@ -77,9 +77,18 @@ IdentifierConfig core_config(const Config& config, const RecordSignals& signals)
 /// Behind a filter that is open up to the thinned band's edge, leaps of friction and noise have
 /// nearly one shape in it; they are told apart as in any record then.
 AntiAliasConfig low_pass_of(const InputConfig& input) {
-  const double corner_hz = input.anti_alias.corner_hz;
-  const bool closes = corner_hz > 0.0 && corner_hz < kThinnedEdge * truck_rate_hz(input);
-  return {corner_hz, input.anti_alias.order, closes && decimation(input.sample_rate_hz) > 1};
+  AntiAliasConfig out{.corner_hz = input.anti_alias.corner_hz, .order = input.anti_alias.order};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    out.own_hz[c] = input.anti_alias.own_hz[c].value_or(0.0);
+    if (out.own_hz[c] > 0.0 && out.corner_hz == 0.0)
+      throw UsageError{
+          "[input.anti_alias] corner_hz: found 0 (none, or unknown) beside a sensor's own corner, "
+          "expected the corner of the other sensors"};
+  }
+  const double frame_hz = out.of(0).corner_hz;
+  const bool closes = frame_hz > 0.0 && frame_hz < kThinnedEdge * truck_rate_hz(input);
+  out.thinned = closes && decimation(input.sample_rate_hz) > 1;
+  return out;
 }
 
 }  // namespace

@@ -389,6 +389,7 @@ struct RunResult {
   std::uint64_t events_more{0};    ///< events beyond the cap
   DataFaults faults;
   std::optional<Magnitudes> magnitudes;  ///< of a truck record; in no file
+  std::optional<double> frame_late_s;    ///< to the wheelsets, by trials, of a file; in no file
   std::optional<LiveFigures> live;
   std::vector<WatchState> watched;    ///< of a live run: the alarms of its configuration
   std::vector<LatenessRow> lateness;  ///< of a live run, ascending; bins with nothing are left out

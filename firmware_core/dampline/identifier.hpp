@@ -256,7 +256,7 @@ using Identifier = BasicIdentifier<kIdentifyParts>;
 using EmbeddedIdentifier = BasicIdentifier<kEmbeddedParts>;
 /// Samples to curve for a controller of 128 KiB: state and stack (docs/api.md, small parts).
 using SmallIdentifier = BasicIdentifier<kEstimateParts, SmallEstimator>;
-static_assert(sizeof(SmallIdentifier) <= 106UL * 1024);
+static_assert(sizeof(SmallIdentifier) <= 107UL * 1024);
 
 template <Parts kParts, class EstimatorOfIt>
 Result<IdentifierConfig> BasicIdentifier<kParts, EstimatorOfIt>::check(

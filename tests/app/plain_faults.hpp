@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -335,6 +336,21 @@ inline std::vector<PlainFaultCase> plain_timing_faults(double length_s) {
        {K::kWrongLowPass},
        false,
        [](R& r) { r.config.input.anti_alias.corner_hz = r.between(60.0, 80.0); }},
+      {"frame behind 45-80 Hz",
+       {K::kWrongLowPass},
+       false,
+       [](R& r) { r.sensors.own_corner_hz[0] = r.between(45.0, 80.0); }},
+      {"one wheelset behind 45-80 Hz",
+       {K::kWrongLowPass},
+       false,
+       [](R& r) { r.sensors.own_corner_hz[r.any_wheelset()] = r.between(45.0, 80.0); }},
+      {"both wheelsets behind 45-80 Hz",
+       {K::kWrongLowPass},
+       false,
+       [](R& r) {
+         const double corner_hz = r.between(45.0, 80.0);
+         r.sensors.own_corner_hz = {0.0, corner_hz, corner_hz};
+       }},
   };
 }
 
@@ -352,7 +368,10 @@ inline PlainExplained explained_with(const PlainTruck& truck, const PlainMotion&
       record.config.input.range_mps2[c] = plain::full_scale_mps2(c);
   }
   fault.make(record);
-  const PlainRows rows = plain_rows(motion, record.sensors, length_s, record.fault);
+  std::optional<PlainMotion> own;
+  if (record.sensors.own_corner_hz != PlainSensors{}.own_corner_hz)
+    own = plain_motion(truck, record.sensors, length_s + 0.1, motion.seed);
+  const PlainRows rows = plain_rows(own ? *own : motion, record.sensors, length_s, record.fault);
   const TemporaryFile file{plain_text(rows, record.sensors.rate_hz)};
   return explained_from(record.config, file.path());
 }

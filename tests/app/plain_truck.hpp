@@ -35,10 +35,11 @@ inline constexpr std::array kPlainTrucks{PlainTruck{"laden 80", 37200.0, 5.26e6,
 
 struct PlainSensors {
   double rate_hz{300.0};
-  double corner_hz{100.0};  ///< of a Butterworth low pass of fourth order; 0: none
-  double noise_mps2{0.02};  ///< white, rms
-  int bits{12};             ///< of 20 m/s^2 for the frame, 120 m/s^2 for wheelsets
-  double jitter_s{0.0};     ///< rms, of each channel by itself
+  double corner_hz{100.0};                ///< of a Butterworth low pass of fourth order; 0: none
+  std::array<double, 3> own_corner_hz{};  ///< of a channel whose corner is another
+  double noise_mps2{0.02};                ///< white, rms
+  int bits{12};                           ///< of 20 m/s^2 for the frame, 120 m/s^2 for wheelsets
+  double jitter_s{0.0};                   ///< rms, of each channel by itself
 
   std::array<double, 3> late_s{};  ///< each channel's samples are taken so much later
   // Where they sit, and what else they see.
@@ -196,12 +197,13 @@ struct PlainFault {
 struct PlainMotion {
   std::array<plain::Signal, 3> seen;
   std::mt19937_64 random;
+  std::uint64_t seed;
 };
 
 inline PlainMotion plain_motion(const PlainTruck& truck, const PlainSensors& sensors,
                                 double length_s, std::uint64_t seed) {
   using namespace plain;
-  PlainMotion motion{{}, std::mt19937_64{seed}};
+  PlainMotion motion{{}, std::mt19937_64{seed}, seed};
   std::array<Signal, 3>& seen = motion.seen;
   const auto lag = static_cast<std::size_t>(kWheelbaseM / truck.speed_mps * kFineHz);
   const auto count = static_cast<std::size_t>(length_s * kFineHz);
@@ -210,8 +212,11 @@ inline PlainMotion plain_motion(const PlainTruck& truck, const PlainSensors& sen
   seen[2].assign(rail.begin(), rail.begin() + static_cast<std::ptrdiff_t>(count));
   seen[0] = frame(truck, seen[1], seen[2]);
   misplace(truck, sensors, seed, seen);
-  if (sensors.corner_hz > 0.0)
-    for (Signal& each : seen) low_pass(sensors.corner_hz, each);
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    const double own_hz = sensors.own_corner_hz[c];
+    const double corner_hz = own_hz > 0.0 ? own_hz : sensors.corner_hz;
+    if (corner_hz > 0.0) low_pass(corner_hz, seen[c]);
+  }
   return motion;
 }
 

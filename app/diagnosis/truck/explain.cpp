@@ -12,12 +12,12 @@
 
 #include "app/diagnosis/truck/by_motion.hpp"
 #include "app/diagnosis/truck/looks.hpp"
+#include "app/diagnosis/truck/low_pass.hpp"
 #include "app/diagnosis/truck/pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 #include "app/error.hpp"
 #include "app/identify/identify_source.hpp"
-#include "app/identify/low_pass.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "dampline/numeric/mean_t.hpp"
 
@@ -134,21 +134,6 @@ void refine(Reading& reading, const TruckPass& pass, Explained& out) {
   out = std::move(rival);
 }
 
-/// Sensors whose low pass is not as declared: that explains more than effects do.
-void look_for_low_pass(const Reading& reading, Explained& out) {
-  if (out.withheld || out.drifts || out.other) return;
-  const bool is_complete = conclusion_of(out) == effect::Conclusion::kComplete;
-  const bool could_be_too_low = reading.config.input.anti_alias.corner_hz < kUsualHz;
-  if (is_complete && !could_be_too_low && left_over_floor(out) > kBelowFloor) return;
-  const std::optional<double> as_declared = out.identified.fit.held_out_nmse;
-  if (!as_declared) return;
-  std::optional<double> by_effects;
-  if (out.explanation.step_count > 0) by_effects = left_nmse(out);
-  const auto corner_hz =
-      other_low_pass_hz(reading.config, reading.options.source, *as_declared, by_effects);
-  if (corner_hz) name_and_withhold(FaultKind::kWrongLowPass, FaultChannel::kAll, *corner_hz, out);
-}
-
 }  // namespace
 
 void take_misplaced(TruckView view, double rate_hz, Explained& out) {
@@ -196,10 +181,10 @@ Explained explain_truck(const Config& config, const ExplainOptions& options) {
     out.needless.effect[static_cast<std::size_t>(effect::Effect::kGainError)] = true;
     explain_pass(reading, pass, out);
   }
-  look_for_low_pass(reading, out);
+  look_for_low_pass(config, options.source, reading.noise, out);
   effect::name_nothing_impossible(out.explanation);
   if (options.refine) refine(reading, pass, out);
-  excuse_rate(config, out);
+  excuse_rate(config, late_of(out.explanation), out);
   take_misplaced(pass.run->view(), core.sample_rate_hz, out);
   std::uint32_t number = 0;
   for (const std::string& path : options.validation)

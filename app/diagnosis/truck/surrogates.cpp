@@ -77,7 +77,7 @@ effect::SurrogateConfig surrogate_config(const EstimatorConfig& core, const effe
   out.coulomb_mps2 = e.final_coulomb_n.value / mass_kg;
   if (e.base_count > 0)
     out.viscous_per_s = std::max(e.final.theta[effect::ModelFit::kFirstEffect], 0.0);
-  out.input_low_pass_hz = core.anti_alias.corner_hz;
+  out.input_low_pass_hz = 0.5 * (core.anti_alias.of(1).corner_hz + core.anti_alias.of(2).corner_hz);
   out.low_pass_hz = ReferenceLowPass::seen_behind(core.anti_alias).corner_hz;
   out.noise_mps2 = noise.sensors_mps2;
   out.bridged_mps2 = noise.bridged_mps2;

@@ -108,6 +108,18 @@ LateEstimates late_of(const effect::Explanation& e) noexcept {
   return out;
 }
 
+std::optional<double> frame_late_s(const effect::Explanation& e) noexcept {
+  const auto may_be = [](const effect::Step& step) {
+    return is_late(step) || effect::has_memory(step.chosen.effect);
+  };
+  if (!std::all_of(e.step.data(), e.step.data() + e.step_count, may_be)) return std::nullopt;
+  const LateEstimates late_s = late_of(e);
+  const double first_s = late_s[effect::kWheelset1Form].value;
+  const double second_s = late_s[effect::kWheelset2Form].value;
+  if (first_s != second_s && !are_late_alike(late_s)) return std::nullopt;
+  return late_s[effect::kFrameForm].value - 0.5 * (first_s + second_s);
+}
+
 void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept {
   FaultView& faults = out.circumstances.faults;
   if (faults.count == faults.faults.size()) return;
@@ -117,23 +129,27 @@ void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explai
   effect::withhold_effects(out.explanation);
 }
 
-void excuse_rate(const Config& config, Explained& out) noexcept {
+void excuse(Explained& out, const std::function<bool(const Fault&)>& is_excused) {
+  FaultView& faults = out.circumstances.faults;
+  Fault* const begin = faults.faults.data();
+  Fault* const end = begin + faults.count;
+  for (const Fault& fault : faults.list()) {
+    if (!is_excused(fault)) continue;
+    std::erase_if(out.identified.faults.list, [&](const FaultFinding& found) {
+      return found.name == name_of(fault.kind) && found.channel == name_of(fault.channel);
+    });
+  }
+  faults.count = static_cast<std::size_t>(std::remove_if(begin, end, is_excused) - begin);
+}
+
+void excuse_rate(const Config& config, const LateEstimates& late_s, Explained& out) {
   if (!config.car.wheelbase_m || !config.input.speed_mps) return;
-  const LateEstimates late_s = late_of(out.explanation);
   const double between_s =
       late_s[effect::kWheelset2Form].value - late_s[effect::kWheelset1Form].value;
   const double late = std::abs(between_s) * *config.input.speed_mps / *config.car.wheelbase_m;
-  FaultView& faults = out.circumstances.faults;
-  const auto is_excused = [&](const Fault& fault) {
+  excuse(out, [&](const Fault& fault) {
     const double off = std::abs(fault.size / config.input.sample_rate_hz - 1.0);
     return fault.kind == FaultKind::kWrongSampleRate && std::abs(off - late) < kRateExcused;
-  };
-  auto* const end = faults.faults.data() + faults.count;
-  const auto* const left = std::remove_if(faults.faults.data(), end, is_excused);
-  if (left == end) return;
-  faults.count = static_cast<std::size_t>(left - faults.faults.data());
-  std::erase_if(out.identified.faults.list, [](const FaultFinding& fault) {
-    return fault.name == name_of(FaultKind::kWrongSampleRate);
   });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 #include <array>
+#include <functional>
+#include <optional>
 
 #include "app/config/config.hpp"
 #include "app/diagnosis/truck/explain.hpp"
@@ -33,13 +35,17 @@ inline constexpr double kBelowFloor = 0.85;  ///< times the floor: less than sen
 /// In s, by channels; 0 where no step says so.
 using LateEstimates = std::array<Estimate, kChannels>;
 [[nodiscard]] LateEstimates late_of(const effect::Explanation& explanation) noexcept;
+/// By how much the frame is later than both wheelsets, where nothing else was found but friction
+/// that builds up.
+[[nodiscard]] std::optional<double> frame_late_s(const effect::Explanation& explanation) noexcept;
 
 /// One fault more, beside which no effect is named.
 void name_and_withhold(FaultKind kind, FaultChannel channel, double size, Explained& out) noexcept;
 
-/// Takes back a wrong sample rate that was told by the wheelsets' delay where the explanation has
-/// wheelsets that are late by as much.
-void excuse_rate(const Config& config, Explained& out) noexcept;
+/// Takes back faults that something else explains.
+void excuse(Explained& out, const std::function<bool(const Fault&)>& is_excused);
+/// A wrong sample rate that was told by the wheelsets' delay, where they are late by as much.
+void excuse_rate(const Config& config, const LateEstimates& late_s, Explained& out);
 
 /// Takes back what was named without being it, once the floor is known. Where the motion says that
 /// the sensors do not tell that of this truck, and the model leaves much too or takes it for a

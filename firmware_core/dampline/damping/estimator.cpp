@@ -64,10 +64,7 @@ Result<EstimatorConfig> BasicEstimator<Kind>::check(const EstimatorConfig& confi
     left = node;
   }
   if (!decltype(screen_)::check(screen_config(config)).ok()) return Errc::kInvalidConfig;
-  if (!(config.anti_alias.corner_hz >= 0.0) || config.anti_alias.order < 1 ||
-      config.anti_alias.order > 8) {
-    return Errc::kInvalidConfig;
-  }
+  if (!config.anti_alias.is_usable()) return Errc::kInvalidConfig;
   if (config.memory == Memory::kWindow && !Kind::Store::kHasWindow) return Errc::kInvalidConfig;
   if (config.memory != Memory::kInfinite &&
       !(config.memory_s >= kBlockS && std::isfinite(config.memory_s))) {
@@ -414,6 +411,8 @@ std::uint64_t BasicEstimator<Kind>::basis_hash() const noexcept {
   for (const double node : config_.curve_nodes_mps) hash = hashed(hash, node);
   hash = hashed(hash, config_.anti_alias.corner_hz);
   hash = hashed(hash, config_.anti_alias.order);
+  for (const double own_hz : config_.anti_alias.own_hz)
+    if (own_hz > 0.0) hash = hashed(hash, own_hz);
   for (std::size_t s = 0; s < kScales; ++s) hash = hashed(hash, rows_.bank().half(s));
   if (pitch_share_ > 0.0) hash = hashed(hash, pitch_share_);
   if (far_share_ > 0.0) hash = hashed(hash, far_share_);

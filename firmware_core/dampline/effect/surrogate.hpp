@@ -47,7 +47,7 @@ struct SurrogateConfig {
   double viscous_per_s{0.0};     ///< c / M
   FrictionMemory memory{};
   FoundForce found{};
-  double input_low_pass_hz{0.0};                 ///< of the record; 0: none
+  double input_low_pass_hz{0.0};                 ///< of the record's wheelsets; 0: none
   double low_pass_hz{0.0};                       ///< that it is seen through; 0: none
   std::array<double, kChannels> noise_mps2{};    ///< rms, what the resolution makes included
   std::array<double, kChannels> step_mps2{};     ///< resolution; 0: unknown

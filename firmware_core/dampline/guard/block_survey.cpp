@@ -94,8 +94,8 @@ void LagTracker::learn(std::size_t k, const Bin& bin) noexcept {
 BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alias) noexcept
     : rate_hz_{sample_rate_hz},
       bin_hz_{sample_rate_hz / static_cast<double>(Fourier512::kSize)},
-      folds_{!anti_alias.thinned && anti_alias.corner_hz > 0.0 &&
-             anti_alias.corner_hz < kLeastFolded * sample_rate_hz},
+      folds_{!anti_alias.thinned && anti_alias.of(1).corner_hz > 0.0 &&
+             anti_alias.of(1).corner_hz < kLeastFolded * sample_rate_hz},
       shared_{band(4.0, 0.3 * sample_rate_hz)},
       follow_{band(1.1, 1.6)},
       fast_{band(40.0, 0.333 * sample_rate_hz)},
@@ -109,10 +109,10 @@ BlockSurvey::BlockSurvey(double sample_rate_hz, const AntiAliasConfig& anti_alia
                  edge_of(anti_alias) * sample_rate_hz)},
       lags_{LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}, LagTracker{sample_rate_hz}} {
   for (std::size_t k = 1; k < kSpectrumBins; ++k) {
-    alias_shape_[k] = leap_power(anti_alias, hz(k), rate_hz_);
+    alias_shape_[k] = leap_power(anti_alias.of(0), hz(k), rate_hz_);
     // The contact patch lets a wheelset's acceleration fall as 1 / f^2.
     const double from_hz = rate_hz_ - hz(k);
-    folded_shape_[k] = passed_power(anti_alias, from_hz) / (from_hz * from_hz);
+    folded_shape_[k] = passed_power(anti_alias.of(1), from_hz) / (from_hz * from_hz);
   }
 }
 

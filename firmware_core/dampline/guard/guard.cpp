@@ -47,8 +47,7 @@ Result<GuardConfig> Guard::check(const GuardConfig& config) noexcept {
   }
   if (!positive_or_unknown(config.wheelbase_m)) return Errc::kInvalidConfig;
   if (!positive_or_unknown(config.speed_mps)) return Errc::kInvalidConfig;
-  const AntiAliasConfig& filter = config.anti_alias;
-  if (!positive_or_unknown(filter.corner_hz) || filter.order < 1) return Errc::kInvalidConfig;
+  if (!config.anti_alias.is_usable()) return Errc::kInvalidConfig;
   return config;
 }
 

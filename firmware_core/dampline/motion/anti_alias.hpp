@@ -1,26 +1,47 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "dampline/numeric/wide.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline {
 
-/// The sensors' anti-aliasing filter, a Butterworth low pass, the same on every channel.
+/// The sensors' anti-aliasing filters: Butterworth low passes, alike but for corners of their own.
 struct AntiAliasConfig {
   double corner_hz{100.0};  ///< -3 dB; 0: none, or unknown
   int order{4};             ///< 1...8
   /// The samples come of a Decimator: nothing is folded into them, and nothing but its edge is
   /// above kThinnedEdge of their rate.
   bool thinned{false};
+  /// By Channel, where a sensor's corner is another; 0: it is not. Of no use where corner_hz is 0.
+  std::array<double, kChannels> own_hz{};
+
+  /// That of one channel; beyond the three, of an extra sensor.
+  [[nodiscard]] AntiAliasConfig of(std::size_t channel) const noexcept {
+    const bool has_own = corner_hz > 0.0 && channel < kChannels && own_hz[channel] > 0.0;
+    return {has_own ? own_hz[channel] : corner_hz, order, thinned};
+  }
+  [[nodiscard]] bool is_usable() const noexcept {
+    const auto usable = [](double hz) { return hz >= 0.0 && std::isfinite(hz); };
+    return usable(corner_hz) && std::all_of(own_hz.begin(), own_hz.end(), usable) && order >= 1 &&
+           order <= 8;
+  }
 };
 inline constexpr double kThinnedEdge = 0.455;
 
 /// What a Butterworth low pass divides a power by, at `relative` times its corner.
 [[nodiscard]] inline double butterworth_loss(double relative, int order) noexcept {
   return 1.0 + std::pow(relative, 2 * order);
+}
+
+/// By how much it delays what is slow.
+[[nodiscard]] inline double delay_s(const AntiAliasConfig& filter) noexcept {
+  constexpr double kPi = 3.141592653589793238;
+  return 1.0 / (2.0 * kPi * filter.corner_hz * std::sin(kPi / (2.0 * filter.order)));
 }
 
 /// The power of an acceleration that falls as 1 / f, up to a factor, behind the filter.

@@ -35,29 +35,39 @@ std::complex<double> butterworth(double relative, int order) noexcept {
 }  // namespace
 
 AntiAliasConfig ReferenceLowPass::seen_behind(const AntiAliasConfig& sensors) noexcept {
-  if (!(sensors.corner_hz > kHighestSeenHz)) return sensors;
+  AntiAliasConfig lowest = sensors.of(kChannels);
+  for (std::size_t c = 0; c < kChannels; ++c)
+    lowest.corner_hz = std::min(lowest.corner_hz, sensors.of(c).corner_hz);
+  if (!(lowest.corner_hz > kHighestSeenHz)) return lowest;
   return {kReferenceHz, kReferenceOrder, true};
 }
 
-ReferenceLowPass::ReferenceLowPass(const AntiAliasConfig& sensors, double sample_rate_hz) noexcept
-    : is_needed_{sensors.corner_hz > kHighestSeenHz} {
-  if (is_needed_) design(sensors, sample_rate_hz);
+ReferenceLowPass::ReferenceLowPass(const AntiAliasConfig& sensors, double sample_rate_hz) noexcept {
+  const AntiAliasConfig seen = seen_behind(sensors);
+  for (std::size_t s = 0; s < kSignals; ++s)
+    is_needed_ = is_needed_ || sensors.of(s).corner_hz != seen.corner_hz;
+  for (std::size_t s = 0; is_needed_ && s < kSignals; ++s) {
+    const auto taps = taps_between(sensors.of(s), seen, sample_rate_hz);
+    for (std::size_t n = 0; n < kTaps; ++n) taps_[n][s] = taps[n];
+  }
 }
 
-void ReferenceLowPass::design(const AntiAliasConfig& sensors, double sample_rate_hz) noexcept {
-  using Taps = Eigen::Matrix<double, kTaps, 1>;
+std::array<double, ReferenceLowPass::kTaps> ReferenceLowPass::taps_between(
+    const AntiAliasConfig& sensor, const AntiAliasConfig& reference,
+    double sample_rate_hz) noexcept {
+  using Column = Eigen::Matrix<double, kTaps, 1>;
   // Exact at zero frequency.
   Eigen::Matrix<double, kTaps, kTaps> normal;
   normal.setConstant(kAtZeroWeight);
-  Taps right = Taps::Constant(kAtZeroWeight);
+  Column right = Column::Constant(kAtZeroWeight);
   for (int i = 0; i < kResponseGrid; ++i) {
     const double f = (i + 0.5) * 0.5 / kResponseGrid;
     const double weight = f > kEdge ? kBeyondEdgeWeight : 1.0;
     const double hz = f * sample_rate_hz;
-    const std::complex<double> wanted = butterworth(hz / kReferenceHz, kReferenceOrder) /
-                                        butterworth(hz / sensors.corner_hz, sensors.order);
+    const std::complex<double> wanted = butterworth(hz / reference.corner_hz, reference.order) /
+                                        butterworth(hz / sensor.corner_hz, sensor.order);
     const double turn = 2.0 * std::numbers::pi * f;
-    Taps cosine;
+    Column cosine;
     for (std::size_t n = 0; n < kTaps; ++n) {
       const double phase = turn * static_cast<double>(n);
       cosine[static_cast<Eigen::Index>(n)] = std::cos(phase);
@@ -68,8 +78,10 @@ void ReferenceLowPass::design(const AntiAliasConfig& sensors, double sample_rate
       for (Eigen::Index c = 0; c < normal.cols(); ++c)
         normal(r, c) += weight * cosine[std::abs(r - c)];
   }
-  const Taps fit = solve_cholesky<static_cast<int>(kTaps)>(normal, right);
-  std::copy(fit.begin(), fit.end(), taps_.begin());
+  const Column fit = solve_cholesky<static_cast<int>(kTaps)>(normal, right);
+  std::array<double, kTaps> out{};
+  std::copy(fit.begin(), fit.end(), out.begin());
+  return out;
 }
 
 const Sample& ReferenceLowPass::filtered(const Sample& sample) noexcept {
@@ -88,7 +100,7 @@ const Sample& ReferenceLowPass::filtered(const Sample& sample) noexcept {
   Signals sums{};
   for (std::size_t n = 0; n < kTaps; ++n)
     for (std::size_t s = 0; s < kSignals; ++s)
-      sums[s] += taps_[n] * held_[(newest_ + kTaps - n) % kTaps][s];
+      sums[s] += taps_[n][s] * held_[(newest_ + kTaps - n) % kTaps][s];
   out_ = sample;
   std::copy_n(sums.begin(), kChannels, out_.accel_mps2.begin());
   for (std::size_t e = 0; e < kExtras; ++e)

@@ -9,15 +9,17 @@
 
 namespace dampline {
 
-/// Brings the samples of sensors whose low pass lies higher to where level and stiffness were
-/// calibrated, behind a Butterworth low pass of fourth order at 100 Hz: that filter's response over
-/// the sensors' own, as a filter of 14 taps, by least squares up to 0.42 of the rate, with two
-/// samples of delay for all channels. Its phase is wanted as much as its gain: friction's kinks and
-/// a filter's delay bias stiffness against one another (docs/adr/0021-reference-low-pass.md).
-/// Samples of sensors behind a lower filter, or an unknown one, go through as they are.
+/// Brings the samples of all sensors behind one low pass: a Butterworth of fourth order at 100 Hz,
+/// where level and stiffness were calibrated, or the sensors' lowest where that lies lower. Its
+/// response over the sensor's own is a filter of 14 taps, by least squares up to 0.42 of the rate,
+/// with two samples of delay for all channels. Its phase is wanted as much as its gain: friction's
+/// kinks and a filter's delay bias stiffness against one another
+/// (docs/adr/0021-reference-low-pass.md).
+/// Samples of sensors that are all behind one lower filter, or an unknown one, go through as they
+/// are.
 class ReferenceLowPass {
  public:
-  /// What the estimate sees of samples behind `sensors`: that itself, or the reference.
+  /// What the estimate sees of samples behind `sensors`: one filter for all channels.
   [[nodiscard]] static AntiAliasConfig seen_behind(const AntiAliasConfig& sensors) noexcept;
 
   ReferenceLowPass(const AntiAliasConfig& sensors, double sample_rate_hz) noexcept;
@@ -31,12 +33,16 @@ class ReferenceLowPass {
   static constexpr std::size_t kTaps = 14;
   static constexpr std::size_t kSignals = kChannels + kExtras;
   using Signals = std::array<double, kSignals>;
+  using Taps = std::array<Signals, kTaps>;  // of the newest sample first
 
+  /// What makes of samples behind `sensor` such behind `reference`.
+  [[nodiscard]] static std::array<double, kTaps> taps_between(const AntiAliasConfig& sensor,
+                                                              const AntiAliasConfig& reference,
+                                                              double sample_rate_hz) noexcept;
   [[nodiscard]] const Sample& filtered(const Sample& sample) noexcept;
-  void design(const AntiAliasConfig& sensors, double sample_rate_hz) noexcept;
 
-  bool is_needed_;
-  std::array<double, kTaps> taps_{};  // of the newest sample first
+  bool is_needed_{false};
+  Taps taps_{};
   std::array<Signals, kTaps> held_{};
   std::size_t newest_{0};
   std::int64_t last_tick_{0};
