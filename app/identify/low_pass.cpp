@@ -123,8 +123,8 @@ bool is_other(double found_hz, double declared_hz, double highest_hz) {
          (found_hz > kHigher * declared_hz && declared_hz < highest_hz);
 }
 
-std::optional<double> other_corner_hz(Trials& trials, double as_declared,
-                                      std::optional<double> left_nmse) {
+std::optional<OtherLowPass> other_of_all(Trials& trials, double as_declared,
+                                         std::optional<double> left_nmse) {
   const double declared_hz = trials.declared_hz();
   const double start_hz = declared_hz > 0.0 ? std::min(declared_hz, kUsualHz) : kUsualHz;
   if (start_hz != declared_hz && trials.nmse(kStep * start_hz) >= as_declared) return std::nullopt;
@@ -135,7 +135,7 @@ std::optional<double> other_corner_hz(Trials& trials, double as_declared,
   if (!is_other(found_hz, start_hz, trials.highest_hz()) || nmse > kClearly * as_declared ||
       nmse > left_nmse.value_or(nmse))
     return std::nullopt;
-  return found_hz;
+  return OtherLowPass{FaultChannel::kAll, found_hz, nmse};
 }
 
 /// By how much the frame seems late to the wheelsets: where corners that would make it later and
@@ -161,9 +161,7 @@ std::optional<double> frame_late_s(const Config& config, Trials& trials, double 
 std::optional<OtherLowPass> other_low_pass(const Config& config, const SourceOptions& source,
                                            double as_declared, std::optional<double> left_nmse) {
   Trials trials{config, source, {FaultChannel::kAll, {}}, std::numeric_limits<double>::infinity()};
-  const auto corner_hz = other_corner_hz(trials, as_declared, left_nmse);
-  if (!corner_hz) return std::nullopt;
-  return OtherLowPass{FaultChannel::kAll, *corner_hz};
+  return other_of_all(trials, as_declared, left_nmse);
 }
 
 std::optional<OtherLowPass> other_low_pass_of_wheelsets(const Config& config,
@@ -186,9 +184,9 @@ std::optional<OtherLowPass> other_low_pass_of_wheelsets(const Config& config,
   }
   if (of == nullptr) return std::nullopt;
   Trials whole{config, source, *of, std::numeric_limits<double>::infinity()};
-  if (whole.nmse(least.corner_hz) > std::min(kClearly * as_declared, left_nmse))
-    return std::nullopt;
-  return OtherLowPass{of->name, least.corner_hz};
+  const double nmse = whole.nmse(least.corner_hz);
+  if (nmse > std::min(kClearly * as_declared, left_nmse)) return std::nullopt;
+  return OtherLowPass{of->name, least.corner_hz, nmse};
 }
 
 void look_for_low_pass(const Config& config, const SourceOptions& source, RunResult& result) {
@@ -196,8 +194,8 @@ void look_for_low_pass(const Config& config, const SourceOptions& source, RunRes
   Trials trials{config, source, {FaultChannel::kAll, {}}, kStretchS};
   const double as_declared = result.duration_s <= kStretchS ? *result.fit.held_out_nmse
                                                             : trials.nmse(trials.declared_hz());
-  if (const auto corner_hz = other_corner_hz(trials, as_declared, std::nullopt)) {
-    add_fault(FaultKind::kWrongLowPass, FaultChannel::kAll, *corner_hz, result);
+  if (const auto found = other_of_all(trials, as_declared, std::nullopt)) {
+    add_fault(FaultKind::kWrongLowPass, found->channel, found->corner_hz, result);
   } else {
     Trials of_frame{config, source, {FaultChannel::kFrame, {0}}, kStretchS};
     result.frame_late_s = frame_late_s(config, of_frame, as_declared);

@@ -114,7 +114,7 @@ constexpr std::array kFaults{
     Advice{
         "wrong_low_pass", "The sensors' low pass is not what was stated",
         "The size is where it seems to lie. See the sensors' data sheets and what the logger was "
-        "set to, and state [input.anti_alias] corner_hz.",
+        "set to, and state [input.anti_alias] corner_hz, or that sensor's own.",
         kAnyRig},
     Advice{"wrong_value", "Single wrong values in a column", "", kAnyRig},
     Advice{"wrong_time", "Lines whose time is out of order", "",

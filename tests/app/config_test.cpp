@@ -109,6 +109,7 @@ TEST(Config, RefusesAValueOfAWrongType) {
               AllOf(HasSubstr("found 3"), HasSubstr("a text")));
   EXPECT_THAT(config_error("[model]\nbase = \"coulomb\"\n"), HasSubstr("an array"));
   EXPECT_THAT(config_error("[input.anti_alias]\norder = 2.5\n"), HasSubstr("a whole number"));
+  EXPECT_THAT(config_error("[input.anti_alias]\nframe_corner_hz = 0\n"), HasSubstr("found 0"));
   EXPECT_THAT(config_error("car = 1\n"), HasSubstr("car.toml:1:"));
   EXPECT_THAT(config_error("[car]\nmoving_mass_kg = true\n"), HasSubstr("found true"));
 }

@@ -57,7 +57,8 @@ class FieldFaults : public testing::Test {
 TEST_F(FieldFaults, AreNamed) {
   for (const char* const name :
        {"noise burst", "gain step of the frame 3-10 %", "1-3 samples lost, all channels",
-        "timing step 1-8 ms", "a low pass higher than declared"})
+        "timing step 1-8 ms", "a low pass higher than declared", "frame behind 45-80 Hz",
+        "one wheelset behind 45-80 Hz", "both wheelsets behind 45-80 Hz"})
     expect_named(name);
 }
 

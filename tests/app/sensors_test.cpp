@@ -161,6 +161,55 @@ TEST(PlainSensorsLowPass, IsNamedByIdentifyWhereItWouldTrustTheLevel) {
   }
 }
 
+struct OwnCorners {
+  const char* name;
+  std::array<double, kChannels> corner_hz;
+};
+
+class OwnLowPassTest : public testing::TestWithParam<OwnCorners> {};
+
+/// Undeclared, the frame behind 60 Hz makes the level 5 % low, behind 45 Hz 14 %.
+TEST_P(OwnLowPassTest, OfASensorIsPutRightWhereItIsDeclared) {
+  for (const std::size_t which : {0U, 2U}) {
+    const PlainTruck& truck = kPlainTrucks.at(which);
+    const PlainSensors sensors{.own_corner_hz = GetParam().corner_hz};
+    const test::TemporaryFile file{test::plain_record(truck, sensors, 200.0, 9111)};
+    Config config = test::plain_config(truck, sensors);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      config.input.anti_alias.own_hz[c] = GetParam().corner_hz[c];
+    const auto found = test::explained_from(config, file.path());
+    EXPECT_TRUE(found.result.faults.list.empty()) << truck.name;
+    EXPECT_FALSE(found.names_effect()) << truck.name;
+    EXPECT_EQ(found.result.trust, Trust::kTrusted) << truck.name;
+    const Parameter& level = parameter(found.result, "coulomb");
+    EXPECT_NEAR(level.value, truck.coulomb_n, 0.01 * truck.coulomb_n) << truck.name;
+    const Parameter& spring = parameter(found.result, "stiffness");
+    EXPECT_NEAR(spring.value, truck.spring_npm, 3.0 * spring.std) << truck.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners, OwnLowPassTest,
+                         testing::Values(OwnCorners{"OfTheFrame", {60.0, 100.0, 100.0}},
+                                         OwnCorners{"OfAWheelset", {100.0, 60.0, 100.0}}),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(NightlyCorners, OwnLowPassTest,
+                         testing::Values(OwnCorners{"OfTheWheelsets", {100.0, 60.0, 60.0}},
+                                         OwnCorners{"OfEach", {60.0, 200.0, 120.0}}),
+                         name_of_case);
+
+/// Alone, `identify` does not know by which of them.
+TEST(PlainSensorsLowPass, OrLatenessOfTheFrameIsSeenByIdentify) {
+  const PlainTruck& truck = kPlainTrucks.back();
+  for (const PlainSensors& sensors : {PlainSensors{.own_corner_hz = {60.0, 0.0, 0.0}},
+                                      PlainSensors{.late_s = {-3e-3, 0.0, 0.0}}}) {
+    const RunResult result = test::identified_from(truck, sensors, 150.0, 9112);
+    EXPECT_EQ(result.trust, Trust::kModelIncomplete);
+    ASSERT_FALSE(result.trust_reasons.empty());
+    EXPECT_NE(result.trust_reasons[0].find("ms later than the wheelsets"), std::string::npos)
+        << result.trust_reasons[0];
+  }
+}
+
 /// What is folded makes the level 3 to 5 % high there, which its deviation does not hold.
 TEST(PlainSensorsLowPass, IsMissedWhereThereIsNone) {
   for (const double rate_hz : {500.0, 1000.0}) {

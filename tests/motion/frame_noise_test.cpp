@@ -56,7 +56,8 @@ class Frame {
   static constexpr double kRateHz = 300.0;
   static constexpr int kSteps = 16;
 
-  Frame(double leap_mps2, double noise_mps2) : leap_{leap_mps2}, noise_{noise_mps2} {}
+  Frame(double leap_mps2, double noise_mps2, double corner_hz = 100.0)
+      : leap_{leap_mps2}, noise_{noise_mps2}, filter_{corner_hz, kRateHz * kSteps} {}
   Sample next() {
     double filtered = 0.0;
     for (int i = 0; i < kSteps; ++i) {
@@ -74,7 +75,7 @@ class Frame {
   std::mt19937 random_{11};
   std::normal_distribution<double> normal_;
   std::uniform_real_distribution<double> uniform_;
-  ButterworthLowPass<1> filter_{100.0, kRateHz* kSteps};
+  ButterworthLowPass<1> filter_;
 };
 
 double noise_of(double leap_mps2, double noise_mps2, double time_s) {
@@ -90,6 +91,17 @@ TEST(FrameNoise, IsTheWhitePartAndNotWhatLeapsOfFrictionLeave) {
     EXPECT_NEAR(noise_of(0.3, noise_mps2, 300.0) / noise_mps2, 1.0, 0.06) << noise_mps2;
   }
   EXPECT_LT(noise_of(0.3, 0.0, 300.0), 0.003);
+}
+
+// Whatever corner was declared: leaps tell of their own.
+TEST(FrameNoise, TellsTheLowPassOfLeaps) {
+  for (const double corner_hz : {40.0, 60.0, 80.0, 100.0}) {
+    Frame frame{0.3, 0.01, corner_hz};
+    FrameNoise meter{Frame::kRateHz, {}};
+    for (int i = 0; i < 300 * 300; ++i) meter.take(frame.next());
+    EXPECT_NEAR(meter.corner_hz(), corner_hz, 0.03 * corner_hz);
+  }
+  EXPECT_EQ(FrameNoise(Frame::kRateHz, {}).corner_hz(), 0.0);
 }
 
 /// A sample of this height in every 512, on top of something else.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -61,6 +62,49 @@ TEST(ReferenceLowPass, MakesAHighCornerOneOf100Hz) {
           << s.corner_hz << ' ' << s.rate_hz << ' ' << tone_hz;
     }
   }
+}
+
+/// What becomes of a tone that all channels hold alike.
+std::array<std::complex<double>, kChannels> responses(const AntiAliasConfig& sensors,
+                                                      double tone_hz) {
+  constexpr double kRateHz = 300.0;
+  ReferenceLowPass filter{sensors, kRateHz};
+  std::array<std::complex<double>, kChannels> sum{};
+  for (std::int64_t n = 0; n < 3300; ++n) {
+    const double phase = kCircle * tone_hz * static_cast<double>(n) / kRateHz;
+    Sample in;
+    in.tick = n;
+    in.accel_mps2.fill(std::cos(phase));
+    const Sample out = filter.update(in);
+    for (std::size_t c = 0; n >= 300 && c < kChannels; ++c)
+      sum[c] += out.accel_mps2[c] * std::polar(2.0 / 3000.0, -phase);
+  }
+  return sum;
+}
+
+// The lowest goes through as it is, but for the delay that all have.
+TEST(ReferenceLowPass, BringsSingleSensorsBehindTheLowest) {
+  const AntiAliasConfig sensors{.corner_hz = 100.0, .own_hz = {60.0, 0.0, 150.0}};
+  EXPECT_EQ(ReferenceLowPass::seen_behind(sensors).corner_hz, 60.0);
+  EXPECT_EQ(ReferenceLowPass::seen_behind(sensors).own_hz, AntiAliasConfig{}.own_hz);
+  for (const double tone_hz : {1.0, 10.0, 30.0, 60.0, 90.0}) {
+    const auto seen = responses(sensors, tone_hz);
+    const std::complex<double> late = std::polar(1.0, -kCircle * 2.0 * tone_hz / 300.0);
+    const auto wanted = [&](double own_hz) {
+      return late * fourth_order(tone_hz / 60.0) / fourth_order(tone_hz / own_hz);
+    };
+    EXPECT_LT(std::abs(seen[0] - late), 1e-6) << tone_hz;
+    EXPECT_LT(std::abs(seen[1] - wanted(100.0)), 0.01) << tone_hz;
+    EXPECT_LT(std::abs(seen[2] - wanted(150.0)), 0.01) << tone_hz;
+  }
+}
+
+TEST(ReferenceLowPass, OfSensorsThatAllLieHigherIsTheUsualOne) {
+  const AntiAliasConfig sensors{.corner_hz = 240.0, .own_hz = {120.0, 0.0, 0.0}};
+  EXPECT_EQ(ReferenceLowPass::seen_behind(sensors).corner_hz, 100.0);
+  // One that is known is of no use where the others are not.
+  EXPECT_EQ(ReferenceLowPass::seen_behind({.corner_hz = 0.0, .own_hz = {60.0, 0.0, 0.0}}).corner_hz,
+            0.0);
 }
 
 TEST(ReferenceLowPass, LeavesLowAndUnknownCornersAlone) {

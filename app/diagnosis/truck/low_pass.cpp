@@ -31,7 +31,7 @@ std::optional<OtherLowPass> other_of_frame(const AntiAliasConfig& declared, cons
   if (by_delay_hz > most * declared.corner_hz) return std::nullopt;
   // Nearer to it than to the declared one.
   if (seen_hz * seen_hz > by_delay_hz * std::min(declared.corner_hz, kUsualHz)) return std::nullopt;
-  return OtherLowPass{FaultChannel::kFrame, by_delay_hz};
+  return OtherLowPass{FaultChannel::kFrame, by_delay_hz, e.final.held_out_nmse};
 }
 
 /// Of wheelsets of which one follows later, or has more of what is fast.
@@ -57,12 +57,11 @@ std::optional<OtherLowPass> low_pass_of(const Config& config, const SourceOption
   const effect::Explanation& e = out.explanation;
   std::optional<double> by_effects;
   if (e.step_count > 0) by_effects = left_nmse(out);
-  std::optional<OtherLowPass> found;
-  if (any_of_steps(e, is_late)) {
-    found = other_of_frame(estimator_config(config).anti_alias.of(0), noise, e);
-    if (!found) found = other_low_pass_of_wheelsets(config, source, *as_declared, *by_effects);
-  }
-  return found ? found : other_low_pass(config, source, *as_declared, by_effects);
+  auto found = other_low_pass(config, source, *as_declared, by_effects);
+  if (!any_of_steps(e, is_late)) return found;
+  const auto of_wheelsets = other_low_pass_of_wheelsets(config, source, *as_declared, *by_effects);
+  if (of_wheelsets && (!found || of_wheelsets->nmse < found->nmse)) found = of_wheelsets;
+  return found ? found : other_of_frame(estimator_config(config).anti_alias.of(0), noise, e);
 }
 
 /// By how much the channels are late behind such a low pass.
