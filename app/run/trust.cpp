@@ -189,11 +189,10 @@ void judge_time(const RunResult& result, Reasons& out) {
   if (std::abs(result.frame_late_s.value_or(0.0)) < kOutOfTimeS) return;
   out.emplace_back(
       Trust::kModelIncomplete,
-      fmt::format("The frame seems {:.1f} ms {} than the wheelsets, and there less is left: "
-                  "`dampline explain` tells whether it is, is behind another low pass, or moves by "
-                  "another law.",
-                  1e3 * std::abs(*result.frame_late_s),
-                  *result.frame_late_s > 0.0 ? "later" : "earlier"));
+      fmt::format(
+          "The frame seems {:.1f} ms {} than the wheelsets: `dampline explain` tells whether "
+          "it is, is behind another low pass, or moves by another law.",
+          1e3 * std::abs(*result.frame_late_s), *result.frame_late_s > 0.0 ? "later" : "earlier"));
 }
 
 void judge_fit(const Explaining* explaining, const RunResult& result, Reasons& out) {

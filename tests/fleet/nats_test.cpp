@@ -236,7 +236,7 @@ TEST_F(Nats, AKilledHubKeepsWhatItConfirms) {
     for (int i = 0; i < kSegments; ++i) {
       if (std::uniform_real_distribution<>{0.0, 1.0}(random) > share) continue;
       const SegmentFile file = of(driven_states()[state], "4711", i);
-      EXPECT_TRUE(
+      ASSERT_TRUE(
           comes([&] { return car.send(file.about.segment, file.bytes, kPatience).empty(); }));
     }
   };
@@ -355,14 +355,14 @@ TEST_F(FleetNightly, MergesToTheBytesOfItsFilesWhateverFails) {
   fleet::NatsSender late{{leaf(), "", "", "", ""}, "late"};
   for (int i = 0; i < kLoggers; i += 3) {
     const SegmentFile& old = cars_[static_cast<std::size_t>(i)].states.front();
-    EXPECT_TRUE(comes([&] { return late.send(old.about.segment, old.bytes, kPatience).empty(); }));
+    ASSERT_TRUE(comes([&] { return late.send(old.about.segment, old.bytes, kPatience).empty(); }));
   }
   for (int i = 0; i < kLoggers; i += 10) static_cast<void>(forwarder(i, true)->round(kPatience));
   for (; now < kHours * kStepsAnHour + 4; ++now) step(now, 0.3);
   stop("leaf");
   start_leaf("leaf", port_ + 2);
   for (Car& car : cars_)
-    EXPECT_TRUE(comes([&] { return car.forwarder->round(kPatience).error.empty(); }));
+    ASSERT_TRUE(comes([&] { return car.forwarder->round(kPatience).error.empty(); }));
   const json last = collect();
   std::size_t segments = 0;
   for (const Car& car : cars_) segments += last_states(car.states).size();
