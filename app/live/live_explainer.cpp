@@ -120,6 +120,17 @@ void LiveExplainer::judge() {
 
 namespace {
 
+/// Faults that only an explanation finds.
+void join(const DataFaults& found, DataFaults& out) {
+  for (const FaultFinding& fault : found.list) {
+    const bool known = std::any_of(out.list.begin(), out.list.end(), [&](const auto& other) {
+      return other.name == fault.name && other.channel == fault.channel;
+    });
+    if (!known) out.list.push_back(fault);
+  }
+  out.lasting = out.lasting || found.lasting;
+}
+
 /// Concluded as of a file; the result itself keeps the law that it identified.
 void add(Explained found, RunResult& result) {
   RunResult final = result;
@@ -127,6 +138,7 @@ void add(Explained found, RunResult& result) {
   found.identified = final;
   const Explanation told = conclude(found, final);
   result.evidence.explanation = std::move(final.evidence.explanation);
+  join(final.faults, result.faults);
   result.lacking.clear();
   for (const Step& step : told.steps) result.lacking.push_back(step.effect);
   if (!result.parameters.empty()) judge_trust(nullptr, result);
@@ -156,6 +168,7 @@ void LiveExplainer::conclude(RunResult& result) {
   floor_.forget();
   const LiveKnown known{config_, guarded_};
   if (!judge_live(run_.core().effects().sums(), known, floor_, *explainer_, found)) return;
+  take_misplaced(run_.view(), rate_hz(), found);
   other_.forget();
   other_.look(known, floor_, run_.time_s(), *explainer_, found);
   add(std::move(found), result);

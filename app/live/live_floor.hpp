@@ -36,6 +36,7 @@ class LiveFloor {
   /// Floor and conclusion of an explanation of these sums. False: as Surrogates::hold_against().
   [[nodiscard]] bool hold_against(const effect::GramStore& sums, const GuardedNoise& guarded,
                                   effect::Explainer& explainer, Explained& out);
+  [[nodiscard]] const FrameNoise& noise() const noexcept { return noise_; }
   /// Whatever law there was: the next one begins anew, so that it follows from the samples alone.
   void forget() noexcept { any_law_ = false; }
 

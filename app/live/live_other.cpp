@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/diagnosis/truck/low_pass.hpp"
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 
@@ -19,6 +20,7 @@ bool judge_live(const effect::Sums& sums, const LiveKnown& known, LiveFloor& flo
     hold_back(out);
     if (!take_needless(out.explanation, out.needless)) break;
   }
+  look_for_frame_low_pass(known.config, floor.noise(), out);
   effect::name_nothing_impossible(out.explanation);
   return true;
 }

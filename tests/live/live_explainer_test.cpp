@@ -21,6 +21,7 @@
 #include "app/diagnosis/truck/verdict.hpp"
 #include "sim_hw/effects/registry.hpp"
 #include "sim_hw/simulation.hpp"
+#include "tests/app/plain_truck.hpp"
 #include "tests/explain/other_truck.hpp"
 
 namespace dampline::app {
@@ -182,6 +183,49 @@ INSTANTIATE_TEST_SUITE_P(OtherTruck, LiveExplaining,
                          testing::Values(Ride{
                              "", "other_truck", "trusted", 120, {}, beside_another_truck}),
                          ride_name);
+
+struct SensorFault {
+  const char* name;
+  test::PlainSensors sensors;
+};
+
+class LiveFaultsOfSensors : public testing::TestWithParam<SensorFault> {};
+
+/// The run's result names at its end what only an explanation finds, and is trusted no more: the
+/// level is 6 and 3 % low.
+TEST_P(LiveFaultsOfSensors, AreInItsResult) {
+  const test::PlainTruck& truck = test::kPlainTrucks.back();
+  const Config settings = test::plain_config(truck, {});
+  const test::PlainMotion motion = test::plain_motion(truck, GetParam().sensors, 200.1, 8201);
+  const test::PlainRows rows = test::plain_rows(motion, GetParam().sensors, 200.0);
+  ExplainRun run{settings};
+  LiveExplainer explainer{settings, run, LiveExplainer::Pace::kWaits};
+  explainer.start();
+  for (std::size_t i = 0; i < rows[0].size(); ++i) {
+    Sample sample;
+    sample.tick = static_cast<std::int64_t>(i);
+    sample.accel_mps2 = {rows[0][i], rows[1][i], rows[2][i]};
+    run.take(sample);
+  }
+  run.close();
+  explainer.stop();
+  RunResult result = describe_view(run.view(), {}, settings, "simulated");
+  EXPECT_TRUE(result.faults.list.empty());
+  explainer.conclude(result);
+  ASSERT_EQ(result.faults.list.size(), 1U);
+  EXPECT_EQ(result.faults.list[0].name, GetParam().name);
+  EXPECT_EQ(result.faults.list[0].channel, "frame");
+  EXPECT_EQ(result.trust, Trust::kDataFaulty);
+  const json told = json::parse(result.evidence.explanation);
+  EXPECT_EQ(told.at("faults").at(0).at("name"), GetParam().name);
+  EXPECT_TRUE(told.at("steps").empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LiveFaultsOfSensors,
+                         testing::Values(SensorFault{"wrong_low_pass",
+                                                     {.own_corner_hz = {60.0, 0.0, 0.0}}},
+                                         SensorFault{"foreign_motion", {.off_centre_m = 0.1}}),
+                         [](const auto& of) { return std::string{of.param.name}; });
 
 }  // namespace
 }  // namespace dampline::app

@@ -89,4 +89,11 @@ void look_for_low_pass(const Config& config, const SourceOptions& source, const 
   name_and_withhold(FaultKind::kWrongLowPass, found->channel, found->corner_hz, out);
 }
 
+void look_for_frame_low_pass(const Config& config, const FrameNoise& noise, Explained& out) {
+  const effect::Explanation& e = out.explanation;
+  if (out.withheld || out.drifts || out.other || !any_of_steps(e, is_late)) return;
+  const auto found = other_of_frame(estimator_config(config).anti_alias.of(0), noise, e);
+  if (found) name_and_withhold(FaultKind::kWrongLowPass, found->channel, found->corner_hz, out);
+}
+
 }  // namespace dampline::app

@@ -15,4 +15,7 @@ namespace dampline::app {
 void look_for_low_pass(const Config& config, const SourceOptions& source, const FrameNoise& noise,
                        Explained& out);
 
+/// The frame's alone, which needs no further reading.
+void look_for_frame_low_pass(const Config& config, const FrameNoise& noise, Explained& out);
+
 }  // namespace dampline::app
