@@ -183,20 +183,6 @@ def signals(table, results):
     return ns
 
 
-def robustness(table, entries):
-    def text(o):
-        error = "lost" if o["error_after"] is None else f"{o['error_after']:.1e}"
-        after = o.get("not_a_number_after_s")
-        return error if after is None else f"{error}, not a number after {after:.0f} s"
-
-    for e in entries:
-        hours = f"{e['hours']:.0f}" if e["hours"] >= 1 else f"{e['hours']}"
-        part = f"error after {hours} h of running / 15 min / 8 h of standstill"
-        table.add(e["name"], " / ".join(text(e[k]) for k in
-                             ("running", "standstill_900_s", "standstill_28800_s")),
-                  f"after 5 min {e['running']['error_before']:.1e}")
-
-
 def limits(table, limit, mean, ns):
     """What the core can do, and what of it the chain takes."""
     if not limit:
@@ -304,7 +290,6 @@ def figures_of(results, tables):
     mean, worst = instructions(table("instructions"), results.log("instructions"))
     rls, apart = least_squares(table("least_squares"), results)
     streaming = signals(table("signals"), results)
-    robustness(table("robustness"), results.json("robustness").get("robustness", []))
     measured = results.json("scale")
     trucks = scale(table("scale"), measured)
     limits(table("scale"), measured.get("limit"), of_now("instructions", mean),
