@@ -79,9 +79,7 @@ void explain_pass(Reading& reading, const TruckPass& pass, Explained& out) {
 /// something: none is late where the record as it was read leaves less, and that is no more than
 /// sensors make.
 void doubt_lateness(Reading& reading, const TruckPass& pass, Explained& out) {
-  const effect::Explanation& e = out.explanation;
-  const bool any_late = std::any_of(e.step.data(), e.step.data() + e.step_count, is_late);
-  if (!any_late || out.withheld || out.drifts) return;
+  if (!any_of_steps(out.explanation, is_late) || out.withheld || out.drifts) return;
   if (conclusion_of(out) != effect::Conclusion::kPartlyExplained) return;
   Explained punctual = out;
   punctual.needless = {};

@@ -14,23 +14,21 @@ namespace {
 constexpr double kMuchLower = 0.65;  // times the declared: friction seems to build up, too
 constexpr double kOfFaults = 0.6;    // of what is left otherwise, where the guards named faults
 
-bool any_of_steps(const effect::Explanation& e, bool (*is)(const effect::Step&)) {
-  return std::any_of(e.step.data(), e.step.data() + e.step_count, is);
-}
-
 bool builds_up(const effect::Step& step) { return effect::has_memory(step.chosen.effect); }
 
 /// The frame's corner by its lateness, if that is a lower one and its leaps tell of the same.
-std::optional<OtherLowPass> other_of_frame(const AntiAliasConfig& declared, const FrameNoise& noise,
+std::optional<OtherLowPass> other_of_frame(const Config& config, const FrameNoise& noise,
                                            const effect::Explanation& e) {
+  const AntiAliasConfig declared = estimator_config(config).anti_alias.of(0);
   const std::optional<double> late_s = frame_late_s(e);
-  const double seen_hz = noise.corner_hz();
-  if (!late_s || !(declared.corner_hz > 0.0) || seen_hz == 0.0) return std::nullopt;
+  if (!late_s || !(declared.corner_hz > 0.0)) return std::nullopt;
   const double by_delay_hz = declared.corner_hz / (1.0 + *late_s / delay_s(declared));
   const double most = any_of_steps(e, builds_up) ? kMuchLower : kLower;
   if (by_delay_hz > most * declared.corner_hz) return std::nullopt;
+  const double seen_hz = noise.corner_hz();
   // Nearer to it than to the declared one.
-  if (seen_hz * seen_hz > by_delay_hz * std::min(declared.corner_hz, kUsualHz)) return std::nullopt;
+  if (seen_hz == 0.0 || seen_hz * seen_hz > by_delay_hz * std::min(declared.corner_hz, kUsualHz))
+    return std::nullopt;
   return OtherLowPass{FaultChannel::kFrame, by_delay_hz, e.final.held_out_nmse};
 }
 
@@ -61,7 +59,7 @@ std::optional<OtherLowPass> low_pass_of(const Config& config, const SourceOption
   if (!any_of_steps(e, is_late)) return found;
   const auto of_wheelsets = other_low_pass_of_wheelsets(config, source, *as_declared, *by_effects);
   if (of_wheelsets && (!found || of_wheelsets->nmse < found->nmse)) found = of_wheelsets;
-  return found ? found : other_of_frame(estimator_config(config).anti_alias.of(0), noise, e);
+  return found ? found : other_of_frame(config, noise, e);
 }
 
 /// By how much the channels are late behind such a low pass.
@@ -92,7 +90,7 @@ void look_for_low_pass(const Config& config, const SourceOptions& source, const 
 void look_for_frame_low_pass(const Config& config, const FrameNoise& noise, Explained& out) {
   const effect::Explanation& e = out.explanation;
   if (out.withheld || out.drifts || out.other || !any_of_steps(e, is_late)) return;
-  const auto found = other_of_frame(estimator_config(config).anti_alias.of(0), noise, e);
+  const auto found = other_of_frame(config, noise, e);
   if (found) name_and_withhold(FaultKind::kWrongLowPass, found->channel, found->corner_hz, out);
 }
 

@@ -101,6 +101,10 @@ bool is_late(const effect::Step& step) noexcept {
   return step.chosen.effect == effect::Effect::kTimeSkew;
 }
 
+bool any_of_steps(const effect::Explanation& e, bool (*is)(const effect::Step&)) noexcept {
+  return std::any_of(e.step.data(), e.step.data() + e.step_count, is);
+}
+
 LateEstimates late_of(const effect::Explanation& e) noexcept {
   LateEstimates out{};
   for (std::size_t i = 0; i < e.step_count; ++i)

@@ -32,6 +32,9 @@ inline constexpr double kBelowFloor = 0.85;  ///< times the floor: less than sen
 
 /// The step holds a channel that is late.
 [[nodiscard]] bool is_late(const effect::Step& step) noexcept;
+[[nodiscard]] bool any_of_steps(const effect::Explanation& explanation,
+                                bool (*is)(const effect::Step&)) noexcept;
+
 /// In s, by channels; 0 where no step says so.
 using LateEstimates = std::array<Estimate, kChannels>;
 [[nodiscard]] LateEstimates late_of(const effect::Explanation& explanation) noexcept;
