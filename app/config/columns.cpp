@@ -176,14 +176,14 @@ std::optional<Quantity> quantity_of(std::string_view name) {
   return std::nullopt;
 }
 
-struct Parts {
+struct NameAndUnit {
   std::string_view name;
   std::string_view unit;
 };
 
 /// The unit where the name sets it apart: brackets, "in", a slash; otherwise the longest ending
 /// after an underscore or a blank that is a unit.
-Parts parts_of(std::string_view cell) {
+NameAndUnit parts_of(std::string_view cell) {
   for (const char* pair : {"[]", "()"}) {
     const std::size_t from = cell.rfind(pair[0]);
     const std::size_t to = cell.rfind(pair[1]);
@@ -194,7 +194,7 @@ Parts parts_of(std::string_view cell) {
     return {cell.substr(0, at), cell.substr(at + 4)};
   for (std::size_t at = cell.find_first_of("_ /,"); at != std::string_view::npos;
        at = cell.find_first_of("_ /,", at + 1)) {
-    const Parts parts{cell.substr(0, at), cell.substr(at + 1)};
+    const NameAndUnit parts{cell.substr(0, at), cell.substr(at + 1)};
     std::string unit{parts.unit};
     std::replace(unit.begin(), unit.end(), '_', '/');
     const auto quantity = quantity_of(parts.name);
@@ -250,7 +250,7 @@ bool is_unit_of_other(Quantity quantity, std::string_view unit) {
 }
 
 HeaderName read_header_name(std::string_view cell) {
-  const Parts parts = parts_of(cell);
+  const NameAndUnit parts = parts_of(cell);
   HeaderName out{quantity_of(parts.name), std::string{parts.unit}, std::nullopt};
   if (out.quantity && !out.unit.empty()) out.factor = unit_factor(*out.quantity, out.unit);
   return out;

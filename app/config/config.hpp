@@ -4,12 +4,17 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/config/columns.hpp"
 #include "dampline/sample.hpp"
 
 namespace dampline::app {
+
+/// As messages and results call them, by Channel.
+inline constexpr std::array<std::string_view, kChannels> kTruckChannels{"frame", "wheelset1",
+                                                                        "wheelset2"};
 
 struct CarConfig {
   double moving_mass_kg{37200.0};             ///< truck frame and its share of the body

@@ -48,7 +48,6 @@ constexpr auto kFaultWords = [] {
   return out;
 }();
 constexpr std::array<double, 2> kCornersHz{0.7, 1.0};
-constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::array<std::string_view, kChannels> kAccelKeys{"frame_accel", "wheelset1_accel",
                                                              "wheelset2_accel"};
 constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end_accel", "far_frame_accel"};
@@ -128,11 +127,11 @@ void add_input(InputConfig& input, Fields& out) {
   out.push_back({"input.anti_alias", "order", "of that Butterworth filter",
                  IntegerField{&input.anti_alias.order, {1.0, 8.0}}});
   for (std::size_t c = 0; c < kChannels; ++c)
-    out.push_back({"input.range_mps2", kChannelNames[c],
+    out.push_back({"input.range_mps2", kTruckChannels[c],
                    "|a| at or beyond it is clipping; absent: from the DBC file",
                    OptionalNumberField{&input.range_mps2[c], {1e-3, 1e6}, ""}});
   for (std::size_t c = 0; c < kChannels; ++c)
-    out.push_back({"input.noise_mps2", kChannelNames[c],
+    out.push_back({"input.noise_mps2", kTruckChannels[c],
                    "white noise of the sensor, rms; absent: unknown",
                    OptionalNumberField{&input.noise_mps2[c], {1e-6, 1e3}, ""}});
   add_can(input.can, out);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "app/config/config.hpp"
 #include "app/text/format.hpp"
 
 namespace dampline::app {
@@ -53,7 +54,6 @@ const std::vector<Motion>& MotionExcerpt::best() const noexcept {
 
 namespace {
 
-constexpr std::array<std::string_view, kChannels> kChannelNames{"frame", "wheelset1", "wheelset2"};
 constexpr std::uint64_t kFewHits = 20;
 constexpr double kShare = 2e-4;     // coarse codes repeat their largest value now and then
 constexpr std::uint64_t kPile = 2;  // times the hits of the next value
@@ -73,7 +73,7 @@ std::vector<std::string> ClippingWatch::warnings() const {
         fmt::format("Channel {0} seems to clip: {1} samples stand at its extreme, {2:.4g} "
                     "m/s^2 in size, and the result is not to be trusted. [input.range_mps2] "
                     "{0} = {3:.4g} leaves such stretches out.",
-                    kChannelNames[c], format_count(worst.hits), worst.value, 0.999 * worst.value));
+                    kTruckChannels[c], format_count(worst.hits), worst.value, 0.999 * worst.value));
   }
   return out;
 }

@@ -21,7 +21,7 @@ namespace dampline::app {
 
 namespace {
 
-constexpr std::array<std::string_view, kExtras> kExtraKeys{"frame_end", "far_frame"};
+constexpr std::array<std::string_view, kExtras> kExtraNames{"frame_end", "far_frame"};
 
 std::string default_signal(std::string_view message) { return fmt::format("{}.ACCEL_Z", message); }
 
@@ -43,7 +43,7 @@ ChannelConfig extra(const drivers::Dbc& dbc, const InputConfig& input, std::size
   const std::string signal = named.empty() ? default_signal(sim::kExtraMessageNames[e]) : named;
   auto found = drivers::channel_from(dbc, signal, "");
   if (!found.ok())
-    throw UsageError{fmt::format("[input.can] {}_accel: {}", kExtraKeys[e], found.error_text())};
+    throw UsageError{fmt::format("[input.can] {}_accel: {}", kExtraNames[e], found.error_text())};
   return found.value();
 }
 
@@ -60,7 +60,7 @@ void check_distinct(const AssemblerConfig& assembler, const drivers::Dbc& dbc) {
   for (std::size_t c = 0; c < kChannels; ++c)
     all.emplace_back(kTruckChannels[c], &assembler.channels[c]);
   for (std::size_t e = 0; e < kExtras; ++e)
-    if (assembler.extras[e]) all.emplace_back(kExtraKeys[e], &*assembler.extras[e]);
+    if (assembler.extras[e]) all.emplace_back(kExtraNames[e], &*assembler.extras[e]);
   for (auto later = all.begin(); later != all.end(); ++later)
     for (auto earlier = all.begin(); earlier != later; ++earlier)
       if (is_one_signal(*earlier->second, *later->second))

@@ -21,10 +21,6 @@
 
 namespace dampline::app {
 
-/// As messages call them, by Channel.
-inline constexpr std::array<std::string_view, kChannels> kTruckChannels{"frame", "wheelset1",
-                                                                        "wheelset2"};
-
 /// Empty: of the project's own sensors. Throws UsageError naming file and line.
 [[nodiscard]] drivers::Dbc open_dbc(const std::string& path);
 

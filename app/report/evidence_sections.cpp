@@ -14,7 +14,7 @@
 namespace dampline::app {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json json_of(const Evidence& evidence) {
   Json json = Json::parse(evidence.explanation, nullptr, false);

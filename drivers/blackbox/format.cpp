@@ -21,15 +21,11 @@ constexpr std::size_t kMissingBeforeAt = 40;
 constexpr std::size_t kInterfaceCountAt = 48;
 constexpr std::size_t kInterfacesAt = 64;
 constexpr std::size_t kHeaderChecksumAt = kHeaderBytes - 4;
-static_assert(kInterfacesAt + kMostInterfaces * (kLongestInterface + 1) <= kHeaderChecksumAt);
+static_assert(kInterfacesAt + kMostInterfaces * (kLongestName + 1) <= kHeaderChecksumAt);
 
 constexpr std::size_t kFrameHead = 6;
 constexpr std::size_t kEventBytes = 10;
 
-constexpr std::uint32_t kExtendedFlag = 0x80000000U;
-constexpr std::uint32_t kRemoteFlag = 0x40000000U;
-constexpr std::uint32_t kErrorFlag = 0x20000000U;
-constexpr std::uint32_t kIdMask = 0x1FFFFFFFU;
 constexpr unsigned kFdBit = 1U;
 constexpr std::size_t kMostFd = 64;
 constexpr std::size_t kMostClassic = 8;
@@ -49,7 +45,7 @@ std::size_t seal(std::uint8_t type, std::size_t payload, std::uint32_t number, s
 }
 
 std::uint32_t identifier_word(const CanFrame& frame) noexcept {
-  return (frame.id & kIdMask) | (frame.extended ? kExtendedFlag : 0U) |
+  return (frame.id & kExtendedMask) | (frame.extended ? kExtendedFlag : 0U) |
          (frame.remote ? kRemoteFlag : 0U) | (frame.error ? kErrorFlag : 0U);
 }
 
@@ -147,7 +143,7 @@ bool decode_frame(const BlackboxRecord& record, CanFrame& frame) noexcept {
   const unsigned flags = at[4];
   frame = CanFrame{};
   frame.time_ns = record.time_ns;
-  frame.id = word & kIdMask;
+  frame.id = word & kExtendedMask;
   frame.extended = (word & kExtendedFlag) != 0;
   frame.remote = (word & kRemoteFlag) != 0;
   frame.error = (word & kErrorFlag) != 0;

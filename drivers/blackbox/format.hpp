@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "dampline/can_frame.hpp"
+#include "drivers/record/identifier.hpp"
 #include "hal/event.hpp"
 
 namespace dampline::drivers {
@@ -31,7 +32,6 @@ inline constexpr std::size_t kHeaderBytes = 512;
 inline constexpr std::size_t kSecondHeaderAt = 1024;
 inline constexpr std::size_t kRecordsAt = 1536;
 inline constexpr std::size_t kMostInterfaces = 27;
-inline constexpr std::size_t kLongestInterface = 15;
 inline constexpr std::size_t kRecordHead = 16;
 inline constexpr std::size_t kRecordTail = 4;
 /// What a payload can have by its length field; what we write is shorter.
@@ -52,7 +52,7 @@ struct BlackboxHeader {
   std::int64_t created_ns{0};       ///< run time
   std::uint64_t missing_before{0};  ///< records between the file before and this one, not written
   std::uint8_t interface_count{0};
-  std::array<std::array<char, kLongestInterface + 1>, kMostInterfaces> interfaces{};
+  std::array<std::array<char, kLongestName + 1>, kMostInterfaces> interfaces{};
 
   [[nodiscard]] std::string_view interface_name(std::size_t index) const noexcept {
     return interfaces[index].data();

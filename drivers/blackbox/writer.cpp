@@ -268,10 +268,10 @@ Outcome<BlackboxHeader> header_of(const BlackboxConfig& config) {
   header.interface_count = static_cast<std::uint8_t>(config.interfaces.size());
   for (std::size_t i = 0; i < config.interfaces.size(); ++i) {
     const std::string& name = config.interfaces[i];
-    if (name.empty() || name.size() > kLongestInterface) {
+    if (name.empty() || name.size() > kLongestName) {
       return Failure{Errc::kInvalidConfig,
                      fmt::format("{}: interface '{}': expected a name of 1 to {} characters", where,
-                                 name, kLongestInterface)};
+                                 name, kLongestName)};
     }
     std::ranges::copy(name, header.interfaces.at(i).begin());
   }

@@ -19,7 +19,6 @@ constexpr std::uint32_t kCanErrorExt = 73;
 constexpr std::uint32_t kCanMessage2 = 86;
 constexpr std::uint32_t kCanFdMessage = 100;
 constexpr std::uint32_t kCanFdMessage64 = 101;
-constexpr std::uint32_t kExtended = 0x80000000U;
 constexpr std::uint32_t kTenMicroseconds = 1;
 
 using Body = std::span<const char>;
@@ -30,7 +29,7 @@ T at(Body body, std::size_t offset) noexcept {
 }
 
 void set_id(CanFrame& frame, std::uint32_t id) noexcept {
-  frame.extended = (id & kExtended) != 0;
+  frame.extended = (id & kExtendedFlag) != 0;
   frame.id = id & (frame.extended ? kExtendedMask : kStandardMask);
 }
 

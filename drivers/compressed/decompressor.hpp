@@ -10,6 +10,9 @@ namespace dampline::drivers {
 
 enum class Compression : std::uint8_t { kNone, kGzip, kZstd };
 
+/// More than deflate makes of one byte, which is 1032 at most (RFC 1951).
+inline constexpr std::uint64_t kMostDeflation = 1100;
+
 /// What the first bytes of a file say (RFC 1952; RFC 8878). Four bytes are enough.
 [[nodiscard]] Compression compression_of(std::string_view head) noexcept;
 /// Whether more bytes could still make it one: `head` is a beginning of their marks.

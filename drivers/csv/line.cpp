@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "drivers/text/cursor.hpp"
+
 namespace dampline::drivers {
 namespace {
 
@@ -30,8 +32,6 @@ std::size_t end_of_cell(std::string_view rest, char separator) noexcept {
   }
   return rest.size();
 }
-
-bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
 
 /// Any number of blanks and tabs are one separator; those before the first cell are none.
 std::string_view take_blank_cell(std::string_view& rest, bool& more) noexcept {

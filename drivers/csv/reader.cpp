@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "drivers/csv/line.hpp"
+#include "drivers/text/cursor.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::drivers {
 namespace {
 
-constexpr std::string_view kExample =
+constexpr std::string_view kExampleHeader =
     "a header line with column names, such as \"time_s,deflection_m,force_n\"";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool is_number(std::string_view cell) {
   double number = 0.0;
@@ -131,14 +131,13 @@ Outcome<bool> CsvReader::read_header() {
   LineReader::Status status{};
   const auto malformed = [&](std::string_view found) {
     return Failure{Errc::kMalformed,
-                   fmt::format("{}: found {}, expected {}", reader_.name(), found, kExample)};
+                   fmt::format("{}: found {}, expected {}", reader_.name(), found, kExampleHeader)};
   };
   std::string comment;
   do {
     if (!line.empty()) comment = line.substr(comment_mark(line));
     status = next_line(line);
-    if (reader_.line_number() == 1 && line.starts_with(kByteOrderMark))
-      line.remove_prefix(kByteOrderMark.size());
+    if (reader_.line_number() == 1) line = without_byte_order_mark(line);
   } while (status == LineReader::Status::kLine && (line.empty() || is_comment(line)));
   if (status == LineReader::Status::kError) {
     return Failure{reader_.error(), reader_.error_text()};

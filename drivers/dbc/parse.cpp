@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/record/identifier.hpp"
+#include "drivers/text/cursor.hpp"
 #include "drivers/text/quote.hpp"
 #include "drivers/text/whole_file.hpp"
 
@@ -76,9 +78,6 @@ class Cursor {
   std::string_view rest_;
 };
 
-constexpr std::uint32_t kExtendedFlag = 0x80000000U;
-constexpr std::uint32_t kIdMask = 0x1FFFFFFFU;
-
 /// Walks over the lines of a file. Text in quotes may run over several lines and hide keywords.
 class Parser {
  public:
@@ -127,7 +126,7 @@ class Parser {
     if (!id) return fail("BO_ followed by an identifier", cursor.rest());
     DbcMessage made;
     made.extended = (*id & kExtendedFlag) != 0;
-    made.id = *id & kIdMask;
+    made.id = *id & kExtendedMask;
     made.name = cursor.take_name();
     if (made.name.empty() || !cursor.take(':'))
       return fail("a message name and a colon", cursor.rest());
@@ -213,7 +212,7 @@ class Parser {
     cursor.take(':');
     const auto type = cursor.take_number<int>();
     for (DbcMessage& message : dbc_.messages) {
-      if (message.id != (*id & kIdMask) || message.extended != ((*id & kExtendedFlag) != 0))
+      if (message.id != (*id & kExtendedMask) || message.extended != ((*id & kExtendedFlag) != 0))
         continue;
       for (DbcSignal& signal : message.signals) {
         if (signal.name == name) signal.is_float = type.value_or(0) != 0;
@@ -231,8 +230,7 @@ class Parser {
 }  // namespace
 
 Outcome<Dbc> parse_dbc(std::string_view text, std::string file) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = without_byte_order_mark(text);
   return Parser{text, std::move(file)}.parse();
 }
 

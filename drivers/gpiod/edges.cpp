@@ -6,15 +6,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <ctime>
-#include <system_error>
 
 namespace dampline::drivers {
 namespace {
 
 constexpr std::size_t kMostLines = 64;  // of one chip at once, in both versions of the library
-
-std::string reason(int error) { return std::generic_category().message(error); }
 
 Failure wrong(const std::string& text) { return {Errc::kInvalidConfig, text}; }
 
@@ -54,12 +52,12 @@ std::optional<Failure> check_lines(const EdgeConfig& config) {
 Failure chip_failure(const std::string& chip, int error) {
   return {gpio_error(error),
           fmt::format("{}: {}; expected a GPIO chip that may be opened (`gpiodetect` lists them)",
-                      chip_path(chip), reason(error))};
+                      chip_path(chip), std::strerror(error))};
 }
 
 Failure line_failure(const std::string& chip, unsigned offset, int error) {
-  return {gpio_error(error),
-          fmt::format("{} line {}: {}; {}", chip_path(chip), offset, reason(error), advice(error))};
+  return {gpio_error(error), fmt::format("{} line {}: {}; {}", chip_path(chip), offset,
+                                         std::strerror(error), advice(error))};
 }
 
 Errc gpio_error(int error) noexcept { return error == ENODEV ? Errc::kLinkDown : Errc::kIo; }

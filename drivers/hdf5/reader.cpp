@@ -15,12 +15,12 @@
 
 #include "drivers/bytes/spool.hpp"
 #include "drivers/hdf5/handle.hpp"
+#include "drivers/record/column_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 constexpr std::size_t kMostSets = 1024;
-constexpr std::size_t kMostColumns = 1024;
 constexpr std::size_t kPieceNumbers = 16384;  // of a data set at once
 
 using Handle = Hdf5Handle;

@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "drivers/bytes/spool.hpp"
+#include "drivers/compressed/decompressor.hpp"
 #include "drivers/mat/whole.hpp"
+#include "drivers/record/column_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
 constexpr std::size_t kMostVariables = 4096;
-constexpr std::size_t kMostColumns = 1024;
-constexpr std::uint64_t kMostDeflation = 1100;  // deflate makes at most 1032 bytes of one
 
 using Variable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 using File = std::unique_ptr<mat_t, int (*)(mat_t*)>;

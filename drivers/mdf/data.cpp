@@ -8,12 +8,13 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/compressed/decompressor.hpp"
+
 namespace dampline::drivers {
 namespace {
 
 constexpr std::size_t kBuffer = 2 * MdfData::kLongest;
 constexpr std::size_t kPacked = std::size_t{32} * 1024;
-constexpr std::uint64_t kMostDeflation = 1100;  // deflate makes at most 1032 bytes of one
 
 }  // namespace
 

@@ -12,14 +12,11 @@
 #include <utility>
 
 #include "drivers/record/identifier.hpp"
+#include "drivers/text/cursor.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::drivers {
 namespace {
-
-constexpr std::uint32_t kExtendedBit = 0x80000000U;
-constexpr std::array<std::uint8_t, 16> kLengths{0, 1,  2,  3,  4,  5,  6,  7,
-                                                8, 12, 16, 20, 24, 32, 48, 64};
 
 /// "CAN_DataFrame" of "CAN_DataFrame.ID" and of itself.
 std::string_view structure_of(std::string_view name) { return name.substr(0, name.find('.')); }
@@ -132,7 +129,7 @@ const char* MdfFrameGroup::read(std::span<const char> record, CanFrame& frame,
   frame.remote = remote_;
   if (error_) return nullptr;
   const auto id = static_cast<std::uint32_t>(fields_.id->bits(record));
-  const bool marked = (id & kExtendedBit) != 0 || (id & kExtendedMask) > kStandardMask;
+  const bool marked = (id & kExtendedFlag) != 0 || (id & kExtendedMask) > kStandardMask;
   frame.extended = fields_.extended == nullptr ? marked : flag(fields_.extended, record);
   frame.id = id & kExtendedMask;
   if (!frame.extended && frame.id > kStandardMask) return "an identifier of more than 11 bits";
@@ -160,7 +157,8 @@ const char* MdfFrameGroup::read_data(std::span<const char> record, CanFrame& fra
   if (fields_.length != nullptr) {
     length = fields_.length->bits(record);
   } else if (fields_.code != nullptr) {
-    length = kLengths[std::min<std::uint64_t>(fields_.code->bits(record), kLengths.size() - 1)];
+    length = length_of_code(
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(fields_.code->bits(record), 15)));
     if (!frame.fd) length = std::min<std::uint64_t>(length, 8);
   }
   if (length > frame.data.size()) return "more than 64 bytes of data";

@@ -11,11 +11,11 @@
 
 #include "drivers/bytes/spool.hpp"
 #include "drivers/npy/zip.hpp"
+#include "drivers/record/column_file.hpp"
 
 namespace dampline::drivers {
 namespace {
 
-constexpr std::size_t kMostColumns = 1024;
 constexpr std::string_view kSuffix = ".npy";
 
 std::unique_ptr<Decompressor> inflater(bool deflated) {

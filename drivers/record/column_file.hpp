@@ -11,6 +11,9 @@
 
 namespace dampline::drivers {
 
+/// Of an array that is read as a table.
+inline constexpr std::size_t kMostColumns = 1024;
+
 /// Columns of doubles to be written, one at a time in memory.
 struct ColumnTable {
   std::vector<std::string> names;

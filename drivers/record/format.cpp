@@ -13,6 +13,7 @@
 #include "drivers/bytes/byte_stream.hpp"
 #include "drivers/bytes/spool.hpp"
 #include "drivers/mdf/reader.hpp"
+#include "drivers/text/cursor.hpp"
 
 namespace dampline::drivers {
 namespace {
@@ -20,10 +21,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::size_t kHead = std::size_t{64} * 1024;
-constexpr int kLinesToJudge = 200;
+constexpr int kLinesOfHead = 200;
 constexpr std::size_t kHdf5Behind = 512;  // the block that MATLAB 7.3 puts before it
 constexpr std::string_view kHdf5Mark = "\x89HDF\r\n\x1A\n";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 struct Mark {
   std::string_view bytes;
@@ -49,18 +49,8 @@ constexpr std::array kMarks{Mark{"LOGG"sv, RecordFormat::kBlf},
                                  RecordFormat::kXz},
                             Mark{"BZh"sv, RecordFormat::kBzip2}};
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_hex(char c) {
   return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'F') || (c >= 'a' && c <= 'f');
-}
-
-std::string_view take_word(std::string_view& rest) {
-  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
-  std::size_t end = 0;
-  while (end < rest.size() && !is_blank(rest[end])) ++end;
-  const std::string_view word = rest.substr(0, end);
-  rest.remove_prefix(end);
-  return word;
 }
 
 bool all_hex(std::string_view word, std::size_t most) {
@@ -121,8 +111,8 @@ RecordFormat of_line(std::string_view line) {
 }
 
 RecordFormat of_text(std::string_view head) {
-  if (head.starts_with(kByteOrderMark)) head.remove_prefix(kByteOrderMark.size());
-  for (int lines = 0; lines < kLinesToJudge && !head.empty(); ++lines) {
+  head = without_byte_order_mark(head);
+  for (int lines = 0; lines < kLinesOfHead && !head.empty(); ++lines) {
     const std::size_t end = std::min(head.find('\n'), head.size());
     std::string_view line = head.substr(0, end);
     head.remove_prefix(std::min(end + 1, head.size()));

@@ -8,7 +8,10 @@
 
 namespace dampline::drivers {
 
-inline constexpr std::uint32_t kErrorFlag = 0x20000000U;  ///< of an error frame, as Linux has it
+// What marks an identifier where it is one word of 32 bits, as Linux has it.
+inline constexpr std::uint32_t kExtendedFlag = 0x80000000U;
+inline constexpr std::uint32_t kRemoteFlag = 0x40000000U;
+inline constexpr std::uint32_t kErrorFlag = 0x20000000U;
 inline constexpr std::uint32_t kStandardMask = 0x7FFU;
 inline constexpr std::uint32_t kExtendedMask = 0x1FFFFFFFU;
 inline constexpr std::size_t kLongestName = 15;  ///< of an interface

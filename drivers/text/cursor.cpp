@@ -12,9 +12,13 @@ namespace {
 constexpr std::int64_t kMostWhole = 9'223'372'035;  // the last whose 10^9 fold fits in 63 bits
 constexpr int kDecimals = 9;
 
-bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
-
 }  // namespace
+
+std::string_view without_byte_order_mark(std::string_view text) noexcept {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
 
 std::string_view take_word(std::string_view& rest) noexcept {
   std::size_t begin = 0;

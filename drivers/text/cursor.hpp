@@ -8,6 +8,12 @@
 
 namespace dampline::drivers {
 
+/// Between the words of a line.
+[[nodiscard]] constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
+
+/// Without the byte order mark of UTF-8, which some programs write first.
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text) noexcept;
+
 /// Takes the next word, between blanks and tabs, off the front of a line; empty: there is none.
 [[nodiscard]] std::string_view take_word(std::string_view& rest) noexcept;
 

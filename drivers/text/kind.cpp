@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 
+#include "drivers/text/cursor.hpp"
+
 namespace dampline::drivers {
 namespace {
 
@@ -63,8 +65,7 @@ bool begins_as(std::string_view text, std::string_view lower_case) noexcept {
 }
 
 std::optional<ForeignKind> kind_of_text(std::string_view head) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (head.starts_with(kByteOrderMark)) head.remove_prefix(kByteOrderMark.size());
+  head = without_byte_order_mark(head);
   const std::string_view text = without_white(head);
   if (is_json(text)) return ForeignKind{"JSON", "write its numbers as CSV, with jq -r and @csv"};
   if (begins_as(text, "<!doctype html") || begins_as(text, "<html"))

@@ -1,7 +1,9 @@
 option(DAMPLINE_UNITY "compile a folder's files as one: a third of the work from nothing, but a missing #include is not seen" ON)
 
-# by_folder(TARGET): the target's files of one folder are one translation unit. Its property
-# DAMPLINE_APART lists folders and files (by their path below the target's own) that stay apart.
+# by_folder(TARGET [TOGETHER]...): the target's files of one folder are one translation unit, and so
+# are the folders that one expression TOGETHER (a|b|c) matches, since most of a small folder's unit is
+# headers. The target's property DAMPLINE_APART lists folders and files (by their path below the
+# target's own) that stay apart.
 function(by_folder target)
   if(NOT DAMPLINE_UNITY)
     return()
@@ -16,6 +18,12 @@ function(by_folder target)
     if((folder AND folder IN_LIST apart) OR path IN_LIST apart)
       continue()
     endif()
+    foreach(together ${ARGN})
+      if(folder MATCHES "^(${together})$")
+        string(REGEX MATCH "^[a-z/]+" folder ${together})
+        break()
+      endif()
+    endforeach()
     string(MAKE_C_IDENTIFIER "${target}_${folder}" group)
     set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
   endforeach()

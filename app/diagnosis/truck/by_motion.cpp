@@ -16,6 +16,7 @@
 #include "app/beside.hpp"
 #include "app/diagnosis/truck/document.hpp"
 #include "app/diagnosis/truck/explanation.hpp"
+#include "app/diagnosis/truck/verdict.hpp"
 #include "app/identify/identify_source.hpp"
 #include "app/identify/truck_samples.hpp"
 #include "app/law/block_fit.hpp"
@@ -258,16 +259,15 @@ Figure figure_of(const law::Document& d, const law::Unknown& u) {
 
 void put(std::string_view name, const Estimate& value, effect::Explanation& e) {
   if (name == "stiffness") e.final_stiffness_npm = value;
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    for (std::size_t p = 0; p < e.step[i].parameter_count; ++p)
-      if (e.step[i].parameter[p].name == name) e.step[i].parameter[p].estimate = value;
+  for (effect::Step& step : e.steps())
+    for (std::size_t p = 0; p < step.parameter_count; ++p)
+      if (step.parameter[p].name == name) step.parameter[p].estimate = value;
 }
 
 bool can_refine(const Explained& e) {
-  const auto* const end = e.explanation.step.begin() + e.explanation.step_count;
   return !e.withheld && !e.drifts && !e.other && e.lateness == ChannelLateness{} &&
-         std::any_of(e.explanation.step.begin(), end,
-                     [](const effect::Step& s) { return is_elastic(s.chosen.effect); });
+         any_of_steps(e.explanation,
+                      [](const effect::Step& s) { return is_elastic(s.chosen.effect); });
 }
 
 /// Where friction slides, its level; how far apart the equations' and the motion's are.
@@ -281,9 +281,7 @@ double apart(const law::Document& d, const VectorXd& values) {
 }
 
 bool names_frame_gain(const effect::Explanation& e) {
-  const auto* const end = e.step.begin() + e.step_count;
-  return std::any_of(e.step.begin(), end,
-                     [](const effect::Step& s) { return s.parameter[0].name == kFrameGain; });
+  return any_of_steps(e, [](const effect::Step& s) { return s.parameter[0].name == kFrameGain; });
 }
 
 /// A record that its law is moved by; nothing where an effect but a gain of the frame is no term
@@ -330,8 +328,7 @@ bool is_beyond(double sigmas, const Estimate& e) { return std::abs(e.value) > si
 }  // namespace
 
 std::optional<Effect> spring_with_rival(const effect::Explanation& e) {
-  for (std::size_t i = 0; i < e.step_count; ++i) {
-    const effect::Step& step = e.step[i];
+  for (const effect::Step& step : e.steps()) {
     if (!is_elastic(step.chosen.effect)) continue;
     const double gain = step.held_out_nmse_before - step.held_out_nmse_after;
     for (std::size_t r = 0; r < step.runner_up_count; ++r)

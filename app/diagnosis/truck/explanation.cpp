@@ -141,9 +141,7 @@ bool is_unknown(effect::Conclusion conclusion) {
 /// mass.
 std::optional<DriftFinding> drift_of(const Explained& explained) {
   std::optional<DriftFinding> out = explained.identified.faults.drift;
-  const effect::Explanation& e = explained.explanation;
-  const auto* const end = e.step.begin() + e.step_count;
-  const bool remembers = std::any_of(e.step.begin(), end, [](const effect::Step& step) {
+  const bool remembers = any_of_steps(explained.explanation, [](const effect::Step& step) {
     return effect::has_memory(step.chosen.effect);
   });
   if (out && !explained.drifts && remembers) out->parameter = DriftFinding::kNotTold;

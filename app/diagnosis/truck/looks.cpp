@@ -88,8 +88,8 @@ constexpr double kSettled = 0.998;  // of the error of the round before
 /// The late channels among an explanation's steps, as columns.
 effect::Model late_channels(const effect::Explanation& e) noexcept {
   effect::Model out;
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    if (is_late(e.step[i])) out = out.with(e.step[i].chosen);
+  for (const effect::Step& step : e.steps())
+    if (is_late(step)) out = out.with(step.chosen);
   return out;
 }
 
@@ -100,8 +100,8 @@ ChannelLateness values_of(const LateEstimates& late_s) noexcept {
 }
 
 void set_late(effect::Explanation& e, const LateEstimates& late_s) noexcept {
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    if (is_late(e.step[i])) e.step[i].parameter[0].estimate = late_s[e.step[i].chosen.form];
+  for (effect::Step& step : e.steps())
+    if (is_late(step)) step.parameter[0].estimate = late_s[step.chosen.form];
 }
 
 /// One reading more.

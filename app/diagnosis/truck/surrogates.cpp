@@ -153,8 +153,7 @@ void add(const Parts& p, double coulomb_mps2, effect::SurrogateConfig& out) {
 effect::SurrogateConfig with_found(effect::SurrogateConfig out, const effect::Explanation& e) {
   const double coulomb_mps2 = out.coulomb_mps2;
   const double mass_kg = e.final_coulomb_n.value / coulomb_mps2;
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    add({e.step[i], e.grids, mass_kg}, coulomb_mps2, out);
+  for (const effect::Step& step : e.steps()) add({step, e.grids, mass_kg}, coulomb_mps2, out);
   return out;
 }
 

@@ -50,9 +50,9 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
 
 /// A gain of one wheelset that their powers do not show.
 bool is_no_gain(const effect::Explanation& e, double gain) {
-  for (std::size_t i = 0; i < e.step_count; ++i) {
-    if (e.step[i].chosen.effect != effect::Effect::kGainError) continue;
-    const auto& named = e.step[i].parameter[0];
+  for (const effect::Step& step : e.steps()) {
+    if (step.chosen.effect != effect::Effect::kGainError) continue;
+    const auto& named = step.parameter[0];
     const std::string_view name = named.name;
     const double sign = name == "gain_error_wheelset1" ? 1.0 : -1.0;
     const double shown = sign * gain / named.estimate.value;
@@ -102,21 +102,22 @@ bool is_late(const effect::Step& step) noexcept {
 }
 
 bool any_of_steps(const effect::Explanation& e, bool (*is)(const effect::Step&)) noexcept {
-  return std::any_of(e.step.data(), e.step.data() + e.step_count, is);
+  const auto steps = e.steps();
+  return std::any_of(steps.begin(), steps.end(), is);
 }
 
 LateEstimates late_of(const effect::Explanation& e) noexcept {
   LateEstimates out{};
-  for (std::size_t i = 0; i < e.step_count; ++i)
-    if (is_late(e.step[i])) out[e.step[i].chosen.form] = e.step[i].parameter[0].estimate;
+  for (const effect::Step& step : e.steps())
+    if (is_late(step)) out[step.chosen.form] = step.parameter[0].estimate;
   return out;
 }
 
 std::optional<double> frame_late_s(const effect::Explanation& e) noexcept {
-  const auto may_be = [](const effect::Step& step) {
-    return is_late(step) || effect::has_memory(step.chosen.effect);
+  const auto is_another = [](const effect::Step& step) {
+    return !is_late(step) && !effect::has_memory(step.chosen.effect);
   };
-  if (!std::all_of(e.step.data(), e.step.data() + e.step_count, may_be)) return std::nullopt;
+  if (any_of_steps(e, is_another)) return std::nullopt;
   const LateEstimates late_s = late_of(e);
   const double first_s = late_s[effect::kWheelset1Form].value;
   const double second_s = late_s[effect::kWheelset2Form].value;

@@ -21,13 +21,13 @@ constexpr std::int64_t kConnectMs = 5000;
 
 /// Of a C handle, which goes by its own function.
 template <auto kDestroy>
-struct By {
+struct Destroyed {
   void operator()(auto* handle) const { kDestroy(handle); }
 };
-using Options = std::unique_ptr<natsOptions, By<natsOptions_Destroy>>;
-using Context = std::unique_ptr<jsCtx, By<jsCtx_Destroy>>;
-using Subscription = std::unique_ptr<natsSubscription, By<natsSubscription_Destroy>>;
-using Message = std::unique_ptr<natsMsg, By<natsMsg_Destroy>>;
+using Options = std::unique_ptr<natsOptions, Destroyed<natsOptions_Destroy>>;
+using Context = std::unique_ptr<jsCtx, Destroyed<jsCtx_Destroy>>;
+using Subscription = std::unique_ptr<natsSubscription, Destroyed<natsSubscription_Destroy>>;
+using Message = std::unique_ptr<natsMsg, Destroyed<natsMsg_Destroy>>;
 
 void set(natsStatus status, const NatsAddress& address, const char* what) {
   if (status == NATS_OK) return;

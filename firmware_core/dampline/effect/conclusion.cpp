@@ -52,14 +52,14 @@ double floor_ratio(const Explanation& e) noexcept {
 }
 
 bool is_possible(const Explanation& e) noexcept {
-  const auto end = e.step.begin() + static_cast<std::ptrdiff_t>(e.step_count);
+  const auto steps = e.steps();
   const Estimate& level = e.final_coulomb_n;
   const bool of_nothing = level.value < kOfNothingZ * level.std &&
-                          std::any_of(e.step.begin(), end, [](const Step& step) {
+                          std::any_of(steps.begin(), steps.end(), [](const Step& step) {
                             return has_memory(step.chosen.effect);
                           });
   return level.value > 0.0 && e.final_stiffness_npm.value > 0.0 && !of_nothing &&
-         std::none_of(e.step.begin(), end, drives);
+         std::none_of(steps.begin(), steps.end(), drives);
 }
 
 void conclude(std::uint64_t impacts, Explanation& e, double unexplained_above) noexcept {

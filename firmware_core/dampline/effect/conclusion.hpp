@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "dampline/effect/grids.hpp"
 #include "dampline/effect/model_fit.hpp"
@@ -55,6 +56,9 @@ struct Explanation {
   double floor_nmse{0.0};
   /// Coefficients in newtons: friction and spring of base and final model.
   Estimate base_coulomb_n, base_stiffness_npm, final_coulomb_n, final_stiffness_npm;
+
+  [[nodiscard]] std::span<Step> steps() noexcept { return {step.data(), step_count}; }
+  [[nodiscard]] std::span<const Step> steps() const noexcept { return {step.data(), step_count}; }
 };
 
 /// Held-out error of the base in the weights of the final model, which the steps and the final

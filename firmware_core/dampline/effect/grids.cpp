@@ -199,9 +199,9 @@ bool draw_together(const Explanation& e, int round, Grids& grids) noexcept {
   const auto r = static_cast<std::size_t>(std::clamp(round, 0, 2));
   bool any = false;
   grids = e.grids;
-  for (std::size_t i = 0; i < e.step_count; ++i) {
-    if (!step_around(e.step[i], e.final_stiffness_npm.value, kRatios[r], grids)) continue;
-    grids.fine[static_cast<std::size_t>(e.step[i].chosen.effect)] = true;
+  for (const Step& step : e.steps()) {
+    if (!step_around(step, e.final_stiffness_npm.value, kRatios[r], grids)) continue;
+    grids.fine[static_cast<std::size_t>(step.chosen.effect)] = true;
     any = true;
   }
   return any;

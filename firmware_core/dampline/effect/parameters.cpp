@@ -435,9 +435,8 @@ void describe(const Detail& d, Explanation& out) noexcept {
     step.place = part.candidate.variant + part.moved(0).value;
     step.line_offset = part.moved(1).value;
   }
-  for (std::size_t i = 0; i < out.step_count; ++i)
-    for (std::size_t p = 0; p < out.step[i].parameter_count; ++p)
-      list.relate(out.step[i].parameter[p]);
+  for (Step& step : out.steps())
+    for (std::size_t p = 0; p < step.parameter_count; ++p) list.relate(step.parameter[p]);
 }
 
 }  // namespace dampline::effect

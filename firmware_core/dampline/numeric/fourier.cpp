@@ -7,12 +7,12 @@
 namespace dampline {
 namespace {
 
-struct Turn {
+struct Phasor {
   double re, im;
 };
 
 /// cos and sin by their series, to the last digits for |x| <= pi / 4.
-constexpr Turn near_zero(double x) {
+constexpr Phasor near_zero(double x) {
   double cosine = 1.0;
   double sine = x;
   double term_c = 1.0;
@@ -26,27 +26,27 @@ constexpr Turn near_zero(double x) {
   return {cosine, sine};
 }
 
-constexpr std::array<Turn, Fourier512::kSize / 2> make_turns() {
-  std::array<Turn, Fourier512::kSize / 2> turns{};
+constexpr std::array<Phasor, Fourier512::kSize / 2> make_phasors() {
+  std::array<Phasor, Fourier512::kSize / 2> phasors{};
   constexpr std::size_t kQuarter = Fourier512::kSize / 4;
-  constexpr double kStep = 2.0 * std::numbers::pi / static_cast<double>(Fourier512::kSize);
-  for (std::size_t k = 0; k < turns.size(); ++k) {
+  constexpr double kAngleRad = 2.0 * std::numbers::pi / static_cast<double>(Fourier512::kSize);
+  for (std::size_t k = 0; k < phasors.size(); ++k) {
     const std::size_t in_quarter = k % kQuarter;
     const bool upper = in_quarter > kQuarter / 2;
-    const Turn t =
-        near_zero(kStep * static_cast<double>(upper ? kQuarter - in_quarter : in_quarter));
-    const Turn first = upper ? Turn{t.im, t.re} : t;  // cos, sin within the first quarter
-    turns[k] = k < kQuarter ? Turn{first.re, -first.im} : Turn{-first.im, -first.re};
+    const Phasor t =
+        near_zero(kAngleRad * static_cast<double>(upper ? kQuarter - in_quarter : in_quarter));
+    const Phasor first = upper ? Phasor{t.im, t.re} : t;  // cos, sin within the first quarter
+    phasors[k] = k < kQuarter ? Phasor{first.re, -first.im} : Phasor{-first.im, -first.re};
   }
-  return turns;
+  return phasors;
 }
 
-constexpr auto kTurns = make_turns();
+constexpr auto kPhasors = make_phasors();
 
 }  // namespace
 
 Fourier512::Complex Fourier512::turn(std::size_t k) noexcept {
-  return {kTurns[k].re, kTurns[k].im};
+  return {kPhasors[k].re, kPhasors[k].im};
 }
 
 bool Fourier512::advance(std::size_t butterflies) noexcept {
@@ -57,7 +57,7 @@ bool Fourier512::advance(std::size_t butterflies) noexcept {
     const std::size_t half = std::size_t{1} << stage;
     const std::size_t within = index & (half - 1);
     const std::size_t low = ((index >> stage) << (stage + 1)) + within;
-    const Turn& w = kTurns[within << (kStages - 1 - stage)];
+    const Phasor& w = kPhasors[within << (kStages - 1 - stage)];
     Complex& a = x_[low];
     Complex& b = x_[low + half];
     const double re = b.real() * w.re - b.imag() * w.im;

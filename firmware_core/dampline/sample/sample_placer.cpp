@@ -15,7 +15,7 @@ constexpr double kLineMemory = 2048.0;  // samples
 constexpr double kFarthest = 0.5;       // ticks: farther off, a stamp is another tick's
 constexpr int kOutsideInARow = 32;
 constexpr std::int64_t kStampPauseTicks = 1024;
-constexpr double kLookEveryS = 30.0;
+constexpr double kStampLookEveryS = 30.0;
 constexpr double kLookS = 6.0;
 constexpr double kJudgeEveryS = 1.0;
 constexpr double kSettle = 64.0;     // samples of a look before it counts
@@ -49,7 +49,7 @@ void push_back(std::array<double, N>& ring, double x) noexcept {
 SamplePlacer::SamplePlacer(double sample_rate_hz) noexcept
     : rate_hz_{sample_rate_hz},
       look_samples_{std::llround(kLookS * sample_rate_hz)},
-      look_every_{std::llround(kLookEveryS * sample_rate_hz)},
+      look_every_{std::llround(kStampLookEveryS * sample_rate_hz)},
       judge_every_{std::llround(kJudgeEveryS * sample_rate_hz)},
       lanes_{Lane{new_line(sample_rate_hz)}, Lane{new_line(sample_rate_hz)},
              Lane{new_line(sample_rate_hz)}} {
