@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/diagnosis/common/explanation.hpp"
 #include "app/rig/result.hpp"
 
 namespace dampline::app::rig {

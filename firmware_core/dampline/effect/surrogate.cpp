@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dampline/effect/columns.hpp"
 #include "dampline/motion/anti_alias.hpp"
 #include "dampline/motion/fractional_delay.hpp"
 
