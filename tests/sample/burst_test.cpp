@@ -65,11 +65,13 @@ class Burst : public ::testing::TestWithParam<unsigned> {
 };
 
 TEST_P(Burst, LosesNothingOfANodeThatStays) {
-  Gateway gateway;
-  for (std::int64_t& phase : gateway.phase) phase = draw(gateway.burst);
+  Gateway gateway{.burst = 2 + draw(47)};
+  if (gateway.burst <= 16)  // an instant waits no longer for its channels
+    for (std::int64_t& phase : gateway.phase) phase = draw(gateway.burst);
   const auto samples = assemble(assembler_, gateway.frames(nodes_, random_));
   EXPECT_EQ(mixed_samples(samples), 0);
-  EXPECT_GE(samples.size(), 8990U);
+  EXPECT_GE(samples.size(), 8940U);
+  EXPECT_EQ(assembler_.counts().restarts, 0U);
 }
 
 TEST_P(Burst, AlignsANodeThatWasOffAndCountsOn) {
@@ -94,10 +96,10 @@ TEST_P(Burst, AlignsANodeThatWasOffAndStartsAnew) {
 }
 
 TEST_P(Burst, LosesOnlyTheInstantsOfLostFrames) {
-  Gateway gateway{.loss = 0.01};
+  Gateway gateway{.burst = 2 + draw(47), .loss = 0.01};
   const auto samples = assemble(assembler_, gateway.frames(nodes_, random_));
   EXPECT_EQ(mixed_samples(samples), 0);
-  EXPECT_GE(samples.size(), 8600U);
+  EXPECT_GE(samples.size(), 8500U) << gateway.burst;
   EXPECT_LE(assembler_.counts().restarts, 1U);  // lost from the first burst, before it is known
 }
 

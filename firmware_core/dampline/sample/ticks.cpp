@@ -14,7 +14,7 @@ constexpr double kCertain = 0.49;         // of a wrap: a next counter cannot be
 constexpr double kFarTicks = 1.0;         // off the line: jitter is less, and a burst of four more
 constexpr double kSmallStep = 1.0 / 8.0;  // of a wrap: within a burst a loss, no other counter
 
-// A reading this little after the one before is the same instant once more, in ticks.
+// A frame this little after the one before is of the same instant, in ticks.
 constexpr double kRepeatedTicks = 0.25;
 // A pause this long is a gap; nobody catches up with it.
 constexpr std::int64_t kPauseTicks = 16;
@@ -26,12 +26,13 @@ CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
       mask_{counter_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << counter_bits) - 1},
       wrap_{std::ldexp(1.0, static_cast<int>(counter_bits))},
       tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)},
-      usual_{std::min(kCertain * wrap_, kFarTicks)} {}
+      usual_{std::min(kCertain * wrap_, kFarTicks)},
+      at_once_ns_{std::llround(kRepeatedTicks * 1e9 / rate_hz)} {}
 
 void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
                             std::int64_t time_ns) noexcept {
-  line_.start(tick, time_ns);
-  newest_counter_ = counter;
+  is_first_ = true;
+  take(tick, counter, time_ns);
   streak_ = far_frames_ = 0;
 }
 
@@ -63,12 +64,12 @@ void CounterSequence::note_far(std::int64_t tick) noexcept {
 
 Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t counter,
                                   std::int64_t time_ns) noexcept {
-  line_.update(tick, time_ns);
-  newest_counter_ = counter;
+  take(tick, counter, time_ns);
   return {place, tick, std::exchange(streak_, 0)};
 }
 
 Placement CounterSequence::place(std::uint64_t counter, std::int64_t time_ns) noexcept {
+  settle(time_ns);
   const double due_tick = line_.tick_at(time_ns);
   const std::int64_t tick = resolve(counter, due_tick);
   if (fits(tick, due_tick)) {

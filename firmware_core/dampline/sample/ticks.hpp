@@ -45,17 +45,10 @@ class TickLine {
     tick_ = tick;
   }
 
-  /// As update(tick() + 1, time_ns) where the time is within `ticks` of that tick's; else false,
-  /// and nothing is done.
-  [[nodiscard]] bool step(std::int64_t time_ns, double ticks) noexcept {
-    const double predicted_ns = phase_ns_ + period_ns_;
-    const double off_ns = static_cast<double>(time_ns - time_ns_) - predicted_ns;
-    if (!(std::abs(off_ns) < ticks * period_ns_)) return false;
-    const double error_ns = limited(off_ns);
-    if (frames_ < memory_) set_gains(frames_ + 1.0);
-    correct(predicted_ns + phase_gain_ * error_ns, period_gain_ * error_ns);
-    ++tick_;
-    return true;
+  /// Whether the time is within `ticks` of that tick's.
+  [[nodiscard]] bool is_near(std::int64_t tick, std::int64_t time_ns, double ticks) const noexcept {
+    const double predicted_ns = phase_ns_ + static_cast<double>(tick - tick_) * period_ns_;
+    return std::abs(static_cast<double>(time_ns - time_ns_) - predicted_ns) < ticks * period_ns_;
   }
 
   [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
@@ -118,7 +111,8 @@ struct Placement {
 /// Ticks from a counter of any length. The counter decides; the time resolves how often it wrapped.
 /// A frame whose counter does not fit its time is not used; four of them in a row that agree with
 /// each other are a restarted node, whose tick is then set by time. Where frames come in bursts
-/// time is too coarse for that: track is lost, and the channels have to be aligned anew.
+/// time is too coarse for that: track is lost, and the channels have to be aligned anew. The line
+/// goes through the last of the frames that come at one instant, which is in time.
 class CounterSequence {
  public:
   /// counter_bits 1...64.
@@ -130,7 +124,7 @@ class CounterSequence {
   /// is then newest(). False, and nothing done: place() has to decide.
   bool place_next(std::uint64_t counter, std::int64_t time_ns) noexcept;
   [[nodiscard]] const TickLine& line() const noexcept { return line_; }
-  [[nodiscard]] std::int64_t newest() const noexcept { return line_.tick(); }
+  [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
   /// Frames of late came many at once: a time tells the tick no better than to a burst's length.
   [[nodiscard]] bool is_bursty() const noexcept {
     return far_frames_ >= kBurstFrames && newest() - far_tick_ <= kBurstPause;
@@ -138,10 +132,22 @@ class CounterSequence {
 
  private:
   // Frames delivered in a burst may be this late and still be numbered by their counter.
-  static constexpr double kBurstTicks = 32.0;
+  static constexpr double kBurstTicks = 48.0;
   static constexpr int kBurstFrames = 4;
-  static constexpr std::int64_t kBurstPause = 64;
+  static constexpr std::int64_t kBurstPause = 96;
   void note_far(std::int64_t tick) noexcept;
+  /// A frame came: the one before was the last of its instant unless this one is of it, too.
+  void settle(std::int64_t time_ns) noexcept {
+    if (time_ns - newest_ns_ < at_once_ns_) return;
+    is_first_ = false;
+    if (newest_ > line_.tick()) line_.update(newest_, newest_ns_);
+  }
+  void take(std::int64_t tick, std::uint64_t counter, std::int64_t time_ns) noexcept {
+    if (is_first_) line_.start(tick, time_ns);
+    newest_ = tick;
+    newest_ns_ = time_ns;
+    newest_counter_ = counter;
+  }
   [[nodiscard]] std::int64_t resolve(std::uint64_t counter, double due_tick) const noexcept;
   [[nodiscard]] bool fits(std::int64_t tick, double due_tick) const noexcept;
   [[nodiscard]] bool continues_streak(std::uint64_t counter) const noexcept;
@@ -154,6 +160,10 @@ class CounterSequence {
   double wrap_;       // 2^bits
   double tolerance_;  // ticks; wider for long counters, where a chance agreement is unlikely
   double usual_;      // ticks; a next counter this near is the next sample whatever else holds
+  std::int64_t at_once_ns_;
+  bool is_first_{true};  // of the instant of the start
+  std::int64_t newest_{0};
+  std::int64_t newest_ns_{0};
   std::uint64_t newest_counter_{0};
   int streak_{0};  // consecutive frames that continue each other but not the sequence
   std::uint64_t streak_counter_{0};
@@ -164,9 +174,10 @@ class CounterSequence {
 };
 
 inline bool CounterSequence::place_next(std::uint64_t counter, std::int64_t time_ns) noexcept {
-  if (((counter - newest_counter_) & mask_) != 1 || streak_ != 0 || !line_.step(time_ns, usual_))
-    return false;
-  newest_counter_ = counter;
+  if (((counter - newest_counter_) & mask_) != 1 || streak_ != 0) return false;
+  settle(time_ns);
+  if (!line_.is_near(newest_ + 1, time_ns, usual_)) return false;
+  take(newest_ + 1, counter, time_ns);
   return true;
 }
 
