@@ -33,7 +33,14 @@ constexpr double kFewContacts = 2.5;
 constexpr double kTallyKept = 0.98;  // a block
 constexpr double kWrongRate = 0.003;
 constexpr int kRateBlocks = 3;
-constexpr double kTwins = 0.9;  // clean wheelsets agree in at most 0.03 of the samples
+constexpr double kLongestBurst = 48.0;  // samples: so late may a stamp be
+constexpr double kTwins = 0.9;          // clean wheelsets agree in at most 0.03 of the samples
+
+struct SpanOfTime {
+  double samples;
+  double seconds;
+  [[nodiscard]] double rate_hz() const noexcept { return samples / seconds; }
+};
 
 }  // namespace
 
@@ -390,15 +397,28 @@ void Guard::close_block(std::int64_t tick) noexcept {
   block_start_ns_ = last_.time_ns;
 }
 
-// Time that the samples carry against the rate that was declared.
+// Time that the samples carry against the rate that was declared: blocks in a row whose ends say
+// another one, and together more than a burst can be late.
 void Guard::judge_time(const Sample& sample) noexcept {
-  const double seconds = 1e-9 * static_cast<double>(sample.time_ns - block_start_ns_);
-  if (!(seconds > 0.0)) return;
-  const double rate_hz = static_cast<double>(sample.tick - block_start_) / seconds;
-  const bool wrong = std::abs(rate_hz / config_.sample_rate_hz - 1.0) > kWrongRate;
-  wrong_rate_blocks_ = wrong ? wrong_rate_blocks_ + 1 : 0;
-  if (wrong_rate_blocks_ < kRateBlocks) return;
-  log_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, log_.seconds(block_start_), rate_hz);
+  const auto since = [&](std::int64_t tick, std::int64_t time_ns) {
+    return SpanOfTime{static_cast<double>(sample.tick - tick),
+                      1e-9 * static_cast<double>(sample.time_ns - time_ns)};
+  };
+  const SpanOfTime block = since(block_start_, block_start_ns_);
+  if (!(block.seconds > 0.0)) return;
+  if (!(std::abs(block.rate_hz() / config_.sample_rate_hz - 1.0) > kWrongRate)) {
+    wrong_rate_blocks_ = 0;
+    return;
+  }
+  if (wrong_rate_blocks_++ == 0) {
+    wrong_rate_from_ = block_start_;
+    wrong_rate_from_ns_ = block_start_ns_;
+  }
+  const SpanOfTime all = since(wrong_rate_from_, wrong_rate_from_ns_);
+  const double off = std::abs(all.samples - all.seconds * config_.sample_rate_hz);
+  if (wrong_rate_blocks_ < kRateBlocks || off < kLongestBurst) return;
+  log_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, log_.seconds(block_start_),
+              all.rate_hz());
 }
 
 void Guard::finish() noexcept {

@@ -172,6 +172,8 @@ class Guard {
   std::int64_t block_start_{0};
   std::int64_t block_start_ns_{0};
   int wrong_rate_blocks_{0};
+  std::int64_t wrong_rate_from_{0};  // where the first of them began
+  std::int64_t wrong_rate_from_ns_{0};
 };
 
 }  // namespace dampline
