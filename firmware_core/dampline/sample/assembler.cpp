@@ -35,6 +35,7 @@ SampleAssembler::SampleAssembler(const AssemblerConfig& config) noexcept
              ChannelLane{config.channels[1], config.sample_rate_hz},
              ChannelLane{config.channels[2], config.sample_rate_hz},
              ChannelLane{{}, config.sample_rate_hz}, ChannelLane{{}, config.sample_rate_hz}},
+      line_before_pause_{lanes_[0].line()},
       meter_{config.sample_rate_hz} {
   for (std::size_t e = 0; e < kExtras; ++e) {
     if (!config.extras[e]) continue;
@@ -176,11 +177,14 @@ bool SampleAssembler::paused(const ChannelLane& lane, std::int64_t time_ns) cons
                                static_cast<double>(kPauseTicks);
 }
 
-// Ticks go on by time, as well as the nominal line of the frame channel knows.
+// Ticks go on by time, as well as the line of the frame channel knows; where frames come in bursts,
+// that is known to a burst, and better when the channels are aligned.
 void SampleAssembler::restart(std::int64_t time_ns) noexcept {
   const ChannelLane& first = lanes_[0];
   if (aligned_) {
     settle(0);
+    line_before_pause_ = first.line();
+    resume_tick_ = next_tick_;
     for (std::size_t c = 0; c < count_; ++c)
       before_pause_[c] = lanes_[c].newest() - lane_offset_[c];
     after_pause_ = true;
@@ -222,9 +226,19 @@ void SampleAssembler::find_offsets_of_bursts() noexcept {
   }
 }
 
+// The lines before and behind a pause go through the ends of bursts.
+void SampleAssembler::go_on_by_lines() noexcept {
+  const TickLine& line = lanes_[0].line();
+  const std::int64_t later =
+      std::llround(line_before_pause_.tick_at(line.time_ns()) - line.tick_at(line.time_ns()));
+  for (std::size_t c = 0; c < count_; ++c) lane_offset_[c] -= later;
+  next_tick_ = resume_tick_;
+}
+
 void SampleAssembler::align() noexcept {
   if (is_bursty()) {
     find_offsets_of_bursts();
+    if (after_pause_) go_on_by_lines();
   } else {
     find_offsets();
   }

@@ -102,6 +102,7 @@ class SampleAssembler {
   [[nodiscard]] bool is_bursty() const noexcept;
   void find_offsets() noexcept;
   void find_offsets_of_bursts() noexcept;
+  void go_on_by_lines() noexcept;
 
   std::int64_t most_missing_;
   double period_ns_;                             // nominal
@@ -110,6 +111,8 @@ class SampleAssembler {
   std::array<ChannelLane, kMostLanes> lanes_;
   std::array<std::int64_t, kMostLanes> lane_offset_{};   // lane tick = tick + offset
   std::array<std::int64_t, kMostLanes> before_pause_{};  // newest tick, where there was a pause
+  TickLine line_before_pause_;                           // of the first channel
+  std::int64_t resume_tick_{0};                          // the next one, before it
   bool aligned_{false};
   bool after_pause_{false};
   std::int64_t next_tick_{0};
