@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dampline/sample/screen.hpp"
+#include "dampline/sample/ticks.hpp"
 
 namespace dampline {
 namespace {
@@ -33,8 +34,7 @@ constexpr double kFewContacts = 2.5;
 constexpr double kTallyKept = 0.98;  // a block
 constexpr double kWrongRate = 0.003;
 constexpr int kRateBlocks = 3;
-constexpr double kLongestBurst = 48.0;  // samples: so late may a stamp be
-constexpr double kTwins = 0.9;          // clean wheelsets agree in at most 0.03 of the samples
+constexpr double kTwins = 0.9;  // clean wheelsets agree in at most 0.03 of the samples
 
 struct SpanOfTime {
   double samples;
@@ -416,7 +416,7 @@ void Guard::judge_time(const Sample& sample) noexcept {
   }
   const SpanOfTime all = since(wrong_rate_from_, wrong_rate_from_ns_);
   const double off = std::abs(all.samples - all.seconds * config_.sample_rate_hz);
-  if (wrong_rate_blocks_ < kRateBlocks || off < kLongestBurst) return;
+  if (wrong_rate_blocks_ < kRateBlocks || off < CounterSequence::kBurstTicks) return;
   log_.report(FaultKind::kWrongSampleRate, FaultChannel::kAll, log_.seconds(block_start_),
               all.rate_hz());
 }

@@ -115,6 +115,9 @@ struct Placement {
 /// goes through the last of the frames that come at one instant, which is in time.
 class CounterSequence {
  public:
+  /// Frames delivered in a burst may be this late and still be numbered by their counter.
+  static constexpr double kBurstTicks = 48.0;
+
   /// counter_bits 1...64.
   CounterSequence(unsigned counter_bits, double rate_hz) noexcept;
   void start(std::int64_t tick, std::uint64_t counter, std::int64_t time_ns) noexcept;
@@ -131,8 +134,6 @@ class CounterSequence {
   }
 
  private:
-  // Frames delivered in a burst may be this late and still be numbered by their counter.
-  static constexpr double kBurstTicks = 48.0;
   static constexpr int kBurstFrames = 4;
   static constexpr std::int64_t kBurstPause = 96;
   void note_far(std::int64_t tick) noexcept;
