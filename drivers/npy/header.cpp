@@ -145,8 +145,8 @@ double NpyType::read(const char* at) const noexcept {
       break;
   }
   const double count = as_double<std::int64_t>(at, big_endian);
-  constexpr auto kNone = static_cast<double>(std::numeric_limits<std::int64_t>::min());
-  return count == kNone ? std::numeric_limits<double>::quiet_NaN() : count * unit_s;
+  constexpr auto kNotATime = static_cast<double>(std::numeric_limits<std::int64_t>::min());
+  return count == kNotATime ? std::numeric_limits<double>::quiet_NaN() : count * unit_s;
 }
 
 std::optional<NpyHeader> read_npy_header(std::string_view bytes, std::string& why) {
