@@ -7,10 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "dampline/sample.hpp"
+
 namespace dampline::app {
 namespace {
 
-constexpr double kGravityMps2 = 9.80665;
 constexpr double kInchM = 0.0254;
 constexpr double kPoundN = 4.4482216152605;
 
@@ -49,12 +50,12 @@ constexpr std::array kUnits{Unit{Quantity::kTime, "s", 1.0},
                             Unit{Quantity::kForce, "lbf", kPoundN},
                             Unit{Quantity::kForce, "kip", 1e3 * kPoundN},
                             Unit{Quantity::kForce, "kips", 1e3 * kPoundN},
-                            Unit{Quantity::kForce, "kgf", kGravityMps2},
+                            Unit{Quantity::kForce, "kgf", kStandardGravityMps2},
                             Unit{Quantity::kAccel, "m/s2", 1.0},
                             Unit{Quantity::kAccel, "m/ss", 1.0},
                             Unit{Quantity::kAccel, "mps2", 1.0},
                             Unit{Quantity::kAccel, "mm/s2", 1e-3},
-                            Unit{Quantity::kAccel, "g", kGravityMps2},
+                            Unit{Quantity::kAccel, "g", kStandardGravityMps2},
                             Unit{Quantity::kAccel, "gal", 1e-2}};
 
 struct Word {

@@ -12,6 +12,7 @@
 #include "app/run/trust.hpp"
 #include "app/text/format.hpp"
 #include "dampline/motion/decimator.hpp"
+#include "dampline/sample.hpp"
 
 namespace dampline::app {
 namespace {
@@ -124,9 +125,8 @@ EstimatorConfig estimator_config(const Config& config) {
 constexpr double kLeastShakingInGMps2 = 0.1;
 
 Magnitudes magnitudes_of(const TruckView& view, const Config& config) {
-  constexpr double kGravityMps2 = 9.80665;
   return {view.wheelset_mps2,
-          kGravityMps2 * config.car.moving_mass_kg,
+          kStandardGravityMps2 * config.car.moving_mass_kg,
           view.faults.frame_follow.usual,
           view.faults.misplacement.difference,
           view.faults.misplacement.difference_share,

@@ -235,14 +235,14 @@ void fill_course(WaveletFit& fit, RunResult& result) {
 int level_for(const Measured& measured, const Question& question) {
   constexpr double kSteps = 12.0;
   constexpr double kStepsOfD6 = 24.0;
-  constexpr std::size_t kRowsPerTerm = 40;
+  constexpr std::size_t kLevelRowsPerTerm = 40;
   std::size_t terms = 0;
   for (const auto& element : question.terms) terms += element.size();
   const double period = samples_per_period(measured);
   if (period == 0.0) return 0;
   const double steps = question.wavelet == Wavelet::kD6 ? kStepsOfD6 : kSteps;
   int level = std::clamp(static_cast<int>(std::floor(std::log2(period / steps))), 0, kDeepestLevel);
-  while (level > 0 && (measured.samples() >> level) < kRowsPerTerm * terms) --level;
+  while (level > 0 && (measured.samples() >> level) < kLevelRowsPerTerm * terms) --level;
   if (has_kinks(question)) level = coarsest_between_kinks(measured, question, level);
   return level == 0 ? 0 : least_doubted(measured, question, level);
 }

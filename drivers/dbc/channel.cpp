@@ -8,12 +8,11 @@
 #include <cctype>
 #include <optional>
 
+#include "dampline/sample.hpp"
 #include "drivers/text/quote.hpp"
 
 namespace dampline::drivers {
 namespace {
-
-constexpr double kStandardGravityMps2 = 9.80665;
 
 /// What one unit is in m/s^2; nothing when it is no acceleration. Without a unit: m/s^2.
 std::optional<double> unit_mps2(std::string_view unit) {

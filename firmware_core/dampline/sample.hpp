@@ -6,6 +6,9 @@
 
 namespace dampline {
 
+/// By which an acceleration in g is multiplied (the 3rd CGPM, 1901).
+inline constexpr double kStandardGravityMps2 = 9.80665;
+
 /// The three accelerometers of a truck: on its sprung frame and on its two wheelsets.
 enum class Channel : std::uint8_t { kFrame = 0, kWheelset1 = 1, kWheelset2 = 2 };
 inline constexpr std::size_t kChannels = 3;

@@ -28,7 +28,7 @@ class Disk {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return place_; }
   void fill() const {
     std::ofstream ballast{place_ / "ballast"};
-    const std::string block(4096, 'x');
+    const std::string block(1U << 20U, 'x');  // the last one is written as far as there is room
     while (ballast << block << std::flush) continue;
   }
   void empty() const { std::filesystem::remove(place_ / "ballast"); }

@@ -9,7 +9,7 @@
 namespace dampline::bus {
 namespace {
 constexpr std::chrono::nanoseconds kPeriod{1'000'000'000 / Sensors::kRateHz};
-constexpr std::int64_t kTogether = 10;  // instants that one system call hands on
+constexpr std::int64_t kTogether = 30;  // instants that one system call hands on
 
 /// This thread alone goes before a reader in real-time scheduling; what it starts does not.
 void go_first() {
@@ -58,9 +58,10 @@ void Sensors::run(std::chrono::duration<double> time) {
   const auto now = std::chrono::steady_clock::now();
   if (instant_ == 0 || now - due_ > std::chrono::milliseconds{50}) due_ = now;  // they did not run
   for (std::int64_t i = 0; i < instants; i += batch) {
-    due_ += batch * kPeriod;
+    const std::int64_t together = std::min(batch, instants - i);
+    due_ += together * kPeriod;
     std::this_thread::sleep_until(due_);
-    burst(std::min(batch, instants - i));
+    burst(together);
   }
 }
 

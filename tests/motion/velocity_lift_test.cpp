@@ -62,24 +62,26 @@ double error_of(const std::array<double, VelocityLift::kHalf + 1>& cosines, doub
 // any two cosines makes the error larger, both ways alike.
 TEST(VelocityLift, IsTheLeastSquaresFitOfItsTarget) {
   constexpr double kPart = 1e-3;
-  for (const auto& [corner_hz, order] :
-       {std::pair{100.0, 4}, std::pair{120.0, 2}, std::pair{140.0, 6}}) {
-    const VelocityLift lift{{.corner_hz = corner_hz, .order = order}, 300.0};
+  for (const AntiAliasConfig& target : {AntiAliasConfig{.corner_hz = 100.0, .order = 4},
+                                        AntiAliasConfig{.corner_hz = 120.0, .order = 2},
+                                        AntiAliasConfig{.corner_hz = 140.0, .order = 6}}) {
+    const VelocityLift lift{target, 300.0};
     std::array<double, VelocityLift::kHalf + 1> cosines{};
     for (std::size_t k = 0; k < cosines.size(); ++k)
       cosines[k] = (k == 0 ? 1.0 : 2.0) * lift.taps()[VelocityLift::kHalf + k];
-    const double least = error_of(cosines, corner_hz / 300.0, order);
+    const double least = error_of(cosines, target.corner_hz / 300.0, target.order);
     for (std::size_t k = 1; k < cosines.size(); ++k) {
       const auto rise = [&](double part) {
         auto other = cosines;
         other[k] += part;
         other[k - 1] -= part;
-        return error_of(other, corner_hz / 300.0, order) - least;
+        return error_of(other, target.corner_hz / 300.0, target.order) - least;
       };
       const double up = rise(kPart);
       const double down = rise(-kPart);
-      EXPECT_GT(std::min(up, down), 0.0) << corner_hz << ", " << k;
-      EXPECT_NEAR(0.5 * kPart * (down - up) / (down + up), 0.0, 1e-7) << corner_hz << ", " << k;
+      EXPECT_GT(std::min(up, down), 0.0) << target.corner_hz << ", " << k;
+      EXPECT_NEAR(0.5 * kPart * (down - up) / (down + up), 0.0, 1e-7)
+          << target.corner_hz << ", " << k;
     }
   }
 }

@@ -108,7 +108,7 @@ void add_checks(const OscillatorCondition& condition, System system, const Seeds
 
 sim::AccelerometerRunConfig make_config(const OscillatorCondition& condition, System system) {
   constexpr std::uint64_t kLevelSeed = 99;
-  const double rms_mps2 = condition.rms_g * kGravityMps2;
+  const double rms_mps2 = condition.rms_g * kStandardGravityMps2;
   sim::AccelerometerRunConfig config;
   config.oscillator = oscillator(system, condition.frequency_hz, rms_mps2);
   condition.change(config);
@@ -127,7 +127,7 @@ OscillatorAccuracy accuracy_of(const OscillatorCondition& condition, System syst
     config.seed = seeds.first + static_cast<std::uint64_t>(i);
     const auto run = sim::run_accelerometers(config);
     const Found found = identify_own(system, run);
-    out.rms_g += run.mass_rms_mps2 / kGravityMps2 / seeds.count;
+    out.rms_g += run.mass_rms_mps2 / kStandardGravityMps2 / seeds.count;
     out.blocks += static_cast<double>(found.blocks) / seeds.count;
     out.excluded += found.excluded;
     if (!found.ok) continue;

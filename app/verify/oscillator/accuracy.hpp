@@ -13,8 +13,6 @@
 
 namespace dampline::app {
 
-inline constexpr double kGravityMps2 = 9.80665;
-
 /// All that the oscillators below have.
 using AllTerms =
     TermList<Viscous, Spring, CubicSpring, VanDerPolDamper, Friction<>, ProgressiveFriction<>>;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dampline/sample.hpp"
+
 namespace dampline::sim {
 
 /// A mass on a base that moves, per unit mass:
@@ -76,7 +78,7 @@ struct AccelerometerRunConfig {
   double highest_hz{30.0};
   double anti_alias_hz{100.0};  ///< fourth-order Butterworth on both channels; 0: none
   int bits{12};                 ///< over -+ full_scale_mps2; 0: not quantised
-  double full_scale_mps2{2.0 * 9.80665};
+  double full_scale_mps2{2.0 * kStandardGravityMps2};
   double noise_lsb{0.5};  ///< rms before quantisation
   double mass_bias_mps2{0.21};
   double base_bias_mps2{-0.13};

@@ -140,7 +140,7 @@ void SampleAssembler::push_among(Count lanes, const CanFrame& frame) noexcept {
   }
   if (!aligned_) {
     if (!ready_to_align(kAlignFrames)) return;
-    if (is_bursty() && !ready_to_align(kAlignBurst)) return;
+    if (is_bursty() && !(ready_to_align(kAlignBurst) && have_whole_ends())) return;
     align();
     far = true;
   }
@@ -177,6 +177,11 @@ bool SampleAssembler::paused(const ChannelLane& lane, std::int64_t time_ns) cons
                                static_cast<double>(kPauseTicks);
 }
 
+// As counted by what the frame channel had of line and offset.
+std::int64_t SampleAssembler::tick_before_pause(std::int64_t time_ns) const noexcept {
+  return std::llround(line_before_pause_.tick_at(time_ns)) - offset_before_pause_;
+}
+
 // Ticks go on by time, as well as the line of the frame channel knows; where frames come in bursts,
 // that is known to a burst, and better when the channels are aligned.
 void SampleAssembler::restart(std::int64_t time_ns) noexcept {
@@ -184,12 +189,12 @@ void SampleAssembler::restart(std::int64_t time_ns) noexcept {
   if (aligned_) {
     settle(0);
     line_before_pause_ = first.line();
+    offset_before_pause_ = lane_offset_[0];
     resume_tick_ = next_tick_;
     for (std::size_t c = 0; c < count_; ++c)
       before_pause_[c] = lanes_[c].newest() - lane_offset_[c];
     after_pause_ = true;
-    next_tick_ = std::max(next_tick_,
-                          static_cast<std::int64_t>(std::llround(first.line().tick_at(time_ns))));
+    next_tick_ = std::max(next_tick_, tick_before_pause(time_ns));
   }
   for (std::size_t c = 0; c < count_; ++c) lanes_[c].restart(next_tick_);
   aligned_ = false;
@@ -201,6 +206,12 @@ bool SampleAssembler::ready_to_align(std::uint64_t frames) const noexcept {
   const auto end = lanes_.begin() + static_cast<std::ptrdiff_t>(count_);
   return std::all_of(lanes_.begin(), end,
                      [frames](const ChannelLane& lane) { return lane.since_start() >= frames; });
+}
+
+bool SampleAssembler::have_whole_ends() const noexcept {
+  const auto end = lanes_.begin() + static_cast<std::ptrdiff_t>(count_);
+  return std::all_of(lanes_.begin(), end,
+                     [](const ChannelLane& lane) { return lane.has_whole_end(); });
 }
 
 bool SampleAssembler::is_bursty() const noexcept {
@@ -218,19 +229,17 @@ void SampleAssembler::find_offsets() noexcept {
 
 // A line through bursts wavers by half their length; their ends do not.
 void SampleAssembler::find_offsets_of_bursts() noexcept {
-  const std::int64_t first_ns = lanes_[0].earliest_ns(kAlignBurst, period_ns_);
+  const std::int64_t first_ns = lanes_[0].earliest_ns();
   for (std::size_t c = 0; c < count_; ++c) {
-    const std::int64_t after_ns = lanes_[c].earliest_ns(kAlignBurst, period_ns_) - first_ns;
+    const std::int64_t after_ns = lanes_[c].earliest_ns() - first_ns;
     lane_offset_[c] = lanes_[c].newest() - lanes_[0].newest() -
                       std::llround(static_cast<double>(after_ns) / period_ns_);
   }
 }
 
-// The lines before and behind a pause go through the ends of bursts.
-void SampleAssembler::go_on_by_lines() noexcept {
-  const TickLine& line = lanes_[0].line();
-  const std::int64_t later =
-      std::llround(line_before_pause_.tick_at(line.time_ns()) - line.tick_at(line.time_ns()));
+// The line before a pause went through the ends of bursts.
+void SampleAssembler::go_on_by_line() noexcept {
+  const std::int64_t later = tick_before_pause(lanes_[0].earliest_ns()) - lanes_[0].newest();
   for (std::size_t c = 0; c < count_; ++c) lane_offset_[c] -= later;
   next_tick_ = resume_tick_;
 }
@@ -238,13 +247,14 @@ void SampleAssembler::go_on_by_lines() noexcept {
 void SampleAssembler::align() noexcept {
   if (is_bursty()) {
     find_offsets_of_bursts();
-    if (after_pause_) go_on_by_lines();
+    if (after_pause_) go_on_by_line();
   } else {
     find_offsets();
   }
   std::int64_t oldest = next_tick_;
   for (std::size_t c = 0; c < count_; ++c) {
     oldest = std::max(oldest, lanes_[c].oldest() - lane_offset_[c]);
+    lanes_[c].aligned();
     const std::int64_t ticks = lanes_[c].first() - lane_offset_[c] - before_pause_[c] - 1;
     if (after_pause_ && ticks > 0) counts_.channels[c].paused += static_cast<std::uint64_t>(ticks);
   }

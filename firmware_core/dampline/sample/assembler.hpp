@@ -42,14 +42,14 @@ struct AssemblerCounts {
 ///
 /// Channels are aligned once by time, to the nearest tick, over the first kAlignFrames of each, and
 /// then kept by their counters. Where frames come in bursts the last one of each counts, over
-/// kAlignBurst frames, and a node that was off makes all be aligned anew. An instant waits
-/// kWaitTicks for its channels, so frames may swap; an instant that lacks a channel is dropped and
-/// the tick jumps, unless few are. After a pause of kPauseTicks the channels are aligned anew. The
-/// work of one push() is bounded by kLaneSpan steps.
+/// kAlignBurst frames and until each channel has shown the end of one, and a node that was off
+/// makes all be aligned anew. An instant waits kWaitTicks for its channels, so frames may swap; an
+/// instant that lacks a channel is dropped and the tick jumps, unless few are. After a pause of
+/// kPauseTicks the channels are aligned anew. The work of one push() is bounded by kLaneSpan steps.
 class SampleAssembler {
  public:
   static constexpr std::uint64_t kAlignFrames = 16;
-  static constexpr std::int64_t kAlignBurst = 48;
+  static constexpr std::uint64_t kAlignBurst = 48;
   static constexpr std::int64_t kWaitTicks = 16;
   static constexpr std::int64_t kPauseTicks = 1024;
 
@@ -89,6 +89,7 @@ class SampleAssembler {
   void emit_incomplete(Readings readings, std::size_t channels) noexcept;
   [[nodiscard]] bool is_short_hole(std::size_t channel, std::int64_t tick) const noexcept;
   void restart(std::int64_t time_ns) noexcept;
+  [[nodiscard]] std::int64_t tick_before_pause(std::int64_t time_ns) const noexcept;
   [[nodiscard]] const Reading* find(std::size_t channel, std::int64_t tick) const noexcept;
   /// How many channels have the tick; null for the others.
   template <class Count>
@@ -99,10 +100,11 @@ class SampleAssembler {
   [[nodiscard]] bool waits(Count lanes) const noexcept;
   [[nodiscard]] bool paused(const ChannelLane& lane, std::int64_t time_ns) const noexcept;
   [[nodiscard]] bool ready_to_align(std::uint64_t frames) const noexcept;
+  [[nodiscard]] bool have_whole_ends() const noexcept;
   [[nodiscard]] bool is_bursty() const noexcept;
   void find_offsets() noexcept;
   void find_offsets_of_bursts() noexcept;
-  void go_on_by_lines() noexcept;
+  void go_on_by_line() noexcept;
 
   std::int64_t most_missing_;
   double period_ns_;                             // nominal
@@ -112,6 +114,7 @@ class SampleAssembler {
   std::array<std::int64_t, kMostLanes> lane_offset_{};   // lane tick = tick + offset
   std::array<std::int64_t, kMostLanes> before_pause_{};  // newest tick, where there was a pause
   TickLine line_before_pause_;                           // of the first channel
+  std::int64_t offset_before_pause_{0};                  // of it
   std::int64_t resume_tick_{0};                          // the next one, before it
   bool aligned_{false};
   bool after_pause_{false};

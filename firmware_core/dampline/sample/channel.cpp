@@ -61,9 +61,15 @@ void ChannelLane::store_next(const Reading& reading) noexcept {
   }
   kept_[slot_of(reading.tick)] = reading;
   newest_ = reading.tick;
+  earliest_ns_ = std::min(
+      earliest_ns_, static_cast<double>(reading.time_ns - first_ns_) - expected_ns(reading.tick));
   ++since_start_;
   ++counts_.readings;
   if (reading.saturated) ++counts_.saturated;
+}
+
+double ChannelLane::expected_ns(std::int64_t tick) const noexcept {
+  return static_cast<double>(tick - first_tick_) * 1e9 / rate_hz_;
 }
 
 void ChannelLane::number_by_counter(Reading reading, std::uint64_t counter) noexcept {
@@ -128,8 +134,9 @@ void ChannelLane::push(const CanFrame& frame) noexcept {
     by_counter_.start(first_tick_, counter, reading.time_ns);
     by_time_.start(first_tick_, reading.time_ns);
     reading.tick = first_tick_;
+    first_ns_ = reading.time_ns;
+    earliest_ns_ = 0.0;
     store_next(reading);
-    counting_ = config_.has_counter && !config_.multiplexed;
   } else if (config_.has_counter) {
     number_by_counter(reading, counter);
   } else {
@@ -168,16 +175,8 @@ void ChannelLane::store_late(const Reading& reading) noexcept {
   if (reading.saturated) ++counts_.saturated;
 }
 
-std::int64_t ChannelLane::earliest_ns(std::int64_t ticks, double period_ns) const noexcept {
-  const std::int64_t newest_ns = find(newest_)->time_ns;
-  double earliest_ns = 0.0;  // after it
-  for (std::int64_t ago = 0; ago < ticks; ++ago) {
-    const Reading* const reading = find(newest_ - ago);
-    if (reading == nullptr) continue;
-    const auto before_ns = static_cast<double>(reading->time_ns - newest_ns);
-    earliest_ns = std::min(earliest_ns, before_ns + static_cast<double>(ago) * period_ns);
-  }
-  return newest_ns + std::llround(earliest_ns);
+std::int64_t ChannelLane::earliest_ns() const noexcept {
+  return first_ns_ + std::llround(expected_ns(newest_) + earliest_ns_);
 }
 
 std::int64_t ChannelLane::oldest() const noexcept {

@@ -119,9 +119,14 @@ class ChannelLane {
   /// Time and counters do not tell where the newest frames belong: to be restarted, with the
   /// others.
   [[nodiscard]] bool has_lost_track() const noexcept { return lost_track_; }
-  /// When the newest reading would have come at the earliest, by those of so many ticks. Frames may
-  /// be late, not early: of a burst the last one is in time.
-  [[nodiscard]] std::int64_t earliest_ns(std::int64_t ticks, double period_ns) const noexcept;
+  /// It can be aligned by its bursts.
+  [[nodiscard]] bool has_whole_end() const noexcept {
+    return !config_.has_counter || by_counter_.has_whole_end();
+  }
+  /// When the newest reading would have come at the earliest, by all since the start. Frames may be
+  /// late, not early: of a burst the last one is in time. Precondition: not aligned() yet.
+  [[nodiscard]] std::int64_t earliest_ns() const noexcept;
+  void aligned() noexcept { counting_ = config_.has_counter && !config_.multiplexed; }
   [[nodiscard]] const ChannelCounts& counts() const noexcept { return counts_; }
 
  private:
@@ -137,6 +142,7 @@ class ChannelLane {
   void take_released() noexcept;
   void store_next(const Reading& reading) noexcept;
   void store_late(const Reading& reading) noexcept;
+  [[nodiscard]] double expected_ns(std::int64_t tick) const noexcept;  ///< after the first one
 
   ChannelConfig config_;
   SignalReader accel_;
@@ -144,12 +150,14 @@ class ChannelLane {
   SignalReader multiplexor_;
   FullScale full_scale_;
   int needed_;            // payload bytes
-  bool counting_{false};  // started, by a counter, and every frame has the signals
+  bool counting_{false};  // aligned, by a counter, and every frame has the signals
   double rate_hz_;
   CounterSequence by_counter_;
   TimeSequence by_time_;
   std::array<Reading, kKept> kept_{};
   std::int64_t first_tick_{0};
+  std::int64_t first_ns_{0};
+  double earliest_ns_{0.0};  // of those before the alignment, to what is expected
   std::int64_t newest_{0};
   std::uint64_t since_start_{0};
   bool lost_track_{false};

@@ -12,6 +12,7 @@ constexpr int kConfirmingFrames = 4;
 constexpr double kPeriodRange = 0.5;
 constexpr double kCertain = 0.49;         // of a wrap: a next counter cannot be another wrap's
 constexpr double kFarTicks = 1.0;         // off the line: jitter is less, and a burst of four more
+constexpr double kCatchingUp = 0.6;       // of a period: of a rate half as high again it is 0.67
 constexpr double kSmallStep = 1.0 / 8.0;  // of a wrap: within a burst a loss, no other counter
 
 // A frame this little after the one before is of the same instant, in ticks.
@@ -27,7 +28,7 @@ CounterSequence::CounterSequence(unsigned counter_bits, double rate_hz) noexcept
       wrap_{std::ldexp(1.0, static_cast<int>(counter_bits))},
       tolerance_{std::clamp(wrap_ / 64.0, 0.5, 2.0)},
       usual_{std::min(kCertain * wrap_, kFarTicks)},
-      at_once_ns_{std::llround(kRepeatedTicks * 1e9 / rate_hz)} {}
+      catching_up_ns_{std::llround(kCatchingUp * 1e9 / rate_hz)} {}
 
 void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
                             std::int64_t time_ns) noexcept {
@@ -36,8 +37,7 @@ void CounterSequence::start(std::int64_t tick, std::uint64_t counter,
   streak_ = far_frames_ = 0;
 }
 
-std::int64_t CounterSequence::resolve(std::uint64_t counter, double due_tick) const noexcept {
-  const std::uint64_t ahead = (counter - newest_counter_) & mask_;
+std::int64_t CounterSequence::resolve(std::uint64_t ahead, double due_tick) const noexcept {
   const double due_ahead = due_tick - static_cast<double>(newest());
   if (ahead == 1 && std::abs(due_ahead - 1.0) < kCertain * wrap_) return newest() + 1;
   const double wraps = std::nearbyint((due_ahead - static_cast<double>(ahead)) / wrap_);
@@ -51,9 +51,12 @@ bool CounterSequence::fits(std::int64_t tick, double due_tick) const noexcept {
   const double off = std::abs(due_tick - static_cast<double>(tick));
   if (tick == newest() + 1) return off <= kBurstTicks;
   if (tick <= newest()) return false;
-  if (!is_bursty()) return off <= tolerance_;
+  return is_bursty() || is_first_ ? fits_in_burst(tick, off) : off <= tolerance_;
+}
+
+bool CounterSequence::fits_in_burst(std::int64_t tick, double off) const noexcept {
   const auto step = static_cast<double>(tick - newest());
-  return off <= kBurstTicks && step <= std::min(kSmallStep * wrap_, kBurstTicks);
+  return off <= kBurstTicks && step > 0.0 && step <= std::min(kSmallStep * wrap_, kBurstTicks);
 }
 
 void CounterSequence::note_far(std::int64_t tick) noexcept {
@@ -69,9 +72,10 @@ Placement CounterSequence::accept(Place place, std::int64_t tick, std::uint64_t 
 }
 
 Placement CounterSequence::place(std::uint64_t counter, std::int64_t time_ns) noexcept {
-  settle(time_ns);
+  const std::uint64_t ahead = (counter - newest_counter_) & mask_;
+  settle(time_ns, ahead);
   const double due_tick = line_.tick_at(time_ns);
-  const std::int64_t tick = resolve(counter, due_tick);
+  const std::int64_t tick = resolve(ahead, due_tick);
   if (fits(tick, due_tick)) {
     if (std::abs(due_tick - static_cast<double>(tick)) >= kFarTicks) note_far(tick);
     return accept(Place::kNext, tick, counter, time_ns);
@@ -100,6 +104,11 @@ Placement CounterSequence::suspect(std::int64_t tick, std::uint64_t counter,
     const double error = streak_error_ / static_cast<double>(streak_);
     // Of frames that all come at once, each is a tick earlier for its counter than the one before.
     const bool at_once = error - last_error > 0.25 * static_cast<double>(streak_ - 1);
+    if (at_once && fits_in_burst(streak_tick_, std::abs(last_error))) {
+      far_frames_ = kBurstFrames;
+      far_tick_ = streak_tick_;
+      return accept(Place::kNext, streak_tick_, counter, time_ns);
+    }
     if (is_bursty() || at_once) return {Place::kLostTrack, tick, streak_};
     const bool counter_is_right = std::abs(error) <= tolerance_ && streak_tick_ > newest();
     if (counter_is_right) return accept(Place::kNext, streak_tick_, counter, time_ns);

@@ -112,7 +112,7 @@ struct Placement {
 /// A frame whose counter does not fit its time is not used; four of them in a row that agree with
 /// each other are a restarted node, whose tick is then set by time. Where frames come in bursts
 /// time is too coarse for that: track is lost, and the channels have to be aligned anew. The line
-/// goes through the last of the frames that come at one instant, which is in time.
+/// goes through the last frame of each burst, which is in time.
 class CounterSequence {
  public:
   /// Frames delivered in a burst may be this late and still be numbered by their counter.
@@ -128,6 +128,9 @@ class CounterSequence {
   bool place_next(std::uint64_t counter, std::int64_t time_ns) noexcept;
   [[nodiscard]] const TickLine& line() const noexcept { return line_; }
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
+  /// A burst ended and the next one went on from it, so that no frame is missing at its end. A
+  /// frame on its own is a burst.
+  [[nodiscard]] bool has_whole_end() const noexcept { return has_whole_end_; }
   /// Frames of late came many at once: a time tells the tick no better than to a burst's length.
   [[nodiscard]] bool is_bursty() const noexcept {
     return far_frames_ >= kBurstFrames && newest() - far_tick_ <= kBurstPause;
@@ -135,22 +138,32 @@ class CounterSequence {
 
  private:
   static constexpr int kBurstFrames = 4;
+  static constexpr std::uint64_t kCaughtUp = 4;  // ticks; a counter further on is another node's
   static constexpr std::int64_t kBurstPause = 96;
   void note_far(std::int64_t tick) noexcept;
-  /// A frame came: the one before was the last of its instant unless this one is of it, too.
-  void settle(std::int64_t time_ns) noexcept {
-    if (time_ns - newest_ns_ < at_once_ns_) return;
+  /// A frame came, `ahead` of the one before, which was the last of its burst unless this one
+  /// catches up with it.
+  void settle(std::int64_t time_ns, std::uint64_t ahead) noexcept {
+    const auto ticks = static_cast<std::int64_t>(std::clamp(ahead, std::uint64_t{1}, kCaughtUp));
+    if (time_ns - newest_ns_ < ticks * catching_up_ns_) return;
     is_first_ = false;
+    has_whole_end_ |= ahead == 1;
     if (newest_ > line_.tick()) line_.update(newest_, newest_ns_);
   }
   void take(std::int64_t tick, std::uint64_t counter, std::int64_t time_ns) noexcept {
-    if (is_first_) line_.start(tick, time_ns);
+    if (is_first_) {
+      line_.start(tick, time_ns);
+      note_far(tick);
+    }
     newest_ = tick;
     newest_ns_ = time_ns;
     newest_counter_ = counter;
   }
-  [[nodiscard]] std::int64_t resolve(std::uint64_t counter, double due_tick) const noexcept;
+  [[nodiscard]] std::int64_t resolve(std::uint64_t ahead, double due_tick) const noexcept;
   [[nodiscard]] bool fits(std::int64_t tick, double due_tick) const noexcept;
+  /// A loss within a burst: `off` ticks from the line, of which `tick` is not many behind the
+  /// newest.
+  [[nodiscard]] bool fits_in_burst(std::int64_t tick, double off) const noexcept;
   [[nodiscard]] bool continues_streak(std::uint64_t counter) const noexcept;
   Placement suspect(std::int64_t tick, std::uint64_t counter, std::int64_t time_ns) noexcept;
   Placement accept(Place place, std::int64_t tick, std::uint64_t counter,
@@ -161,8 +174,9 @@ class CounterSequence {
   double wrap_;       // 2^bits
   double tolerance_;  // ticks; wider for long counters, where a chance agreement is unlikely
   double usual_;      // ticks; a next counter this near is the next sample whatever else holds
-  std::int64_t at_once_ns_;
-  bool is_first_{true};  // of the instant of the start
+  std::int64_t catching_up_ns_;  // frames that follow each other within it are of one burst
+  bool is_first_{true};          // of the burst of the start
+  bool has_whole_end_{false};
   std::int64_t newest_{0};
   std::int64_t newest_ns_{0};
   std::uint64_t newest_counter_{0};
@@ -176,7 +190,7 @@ class CounterSequence {
 
 inline bool CounterSequence::place_next(std::uint64_t counter, std::int64_t time_ns) noexcept {
   if (((counter - newest_counter_) & mask_) != 1 || streak_ != 0) return false;
-  settle(time_ns);
+  settle(time_ns, 1);
   if (!line_.is_near(newest_ + 1, time_ns, usual_)) return false;
   take(newest_ + 1, counter, time_ns);
   return true;
