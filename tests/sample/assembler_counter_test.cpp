@@ -170,6 +170,22 @@ TEST_P(AssemblerForEachCounter, KnowsTheTrueRateWhenAGapComes) {
   EXPECT_EQ(wrong_samples(samples, 0), 0);
 }
 
+// So that a wrong declaration is told, and not a car without sensors.
+TEST(AssemblerCounter, FollowsRatesFarFromTheDeclaredOne) {
+  for (const unsigned bits : {8U, 16U, 48U}) {
+    for (const double declared_hz : {152.0, 205.0, 440.0, 590.0}) {
+      const Nodes nodes{.counter_bits = bits};
+      AssemblerConfig config = nodes.config();
+      config.sample_rate_hz = declared_hz;
+      SampleAssembler assembler{config};
+      const auto samples = assemble(assembler, run(nodes, 0, 6000));
+      EXPECT_GE(samples.size(), 2500U) << bits << " bits, " << declared_hz;
+      EXPECT_NEAR(assembler.measured_rate().rate_hz, 300.0, 1e-3)
+          << bits << " bits, " << declared_hz;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(CounterBits, AssemblerForEachCounter,
                          ::testing::Values(0U, 4U, 8U, 16U, 48U));
 

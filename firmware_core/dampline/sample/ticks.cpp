@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kConfirmingFrames = 4;
 constexpr double kPeriodRange = 0.5;
-constexpr double kCertain = 0.49;         // of a wrap: a next counter cannot be another wrap's
-constexpr double kFarTicks = 1.0;         // off the line: jitter is less, and a burst of four more
-constexpr double kCatchingUp = 0.6;       // of a period: of a rate half as high again it is 0.67
+constexpr double kCertain = 0.49;     // of a wrap: a next counter cannot be another wrap's
+constexpr double kFarTicks = 1.0;     // off the line: jitter is less, and a burst of four more
+constexpr double kCatchingUp = 0.45;  // of a period: at twice the rate, still followed, it is 0.5
 constexpr double kSmallStep = 1.0 / 8.0;  // of a wrap: within a burst a loss, no other counter
 
 // A frame this little after the one before is of the same instant, in ticks.

@@ -138,7 +138,7 @@ class CounterSequence {
 
  private:
   static constexpr int kBurstFrames = 4;
-  static constexpr std::uint64_t kCaughtUp = 4;  // ticks; a counter further on is another node's
+  static constexpr std::uint64_t kCaughtUp = 8;  // ticks; a counter further on is another node's
   static constexpr std::int64_t kBurstPause = 96;
   void note_far(std::int64_t tick) noexcept;
   /// A frame came, `ahead` of the one before, which was the last of its burst unless this one
