@@ -185,10 +185,9 @@ std::int64_t SampleAssembler::tick_before_pause(std::int64_t time_ns) const noex
 // Ticks go on by time, as well as the line of the frame channel knows; where frames come in bursts,
 // that is known to a burst, and better when the channels are aligned.
 void SampleAssembler::restart(std::int64_t time_ns) noexcept {
-  const ChannelLane& first = lanes_[0];
   if (aligned_) {
     settle(0);
-    line_before_pause_ = first.line();
+    line_before_pause_ = lanes_[0].line();
     offset_before_pause_ = lane_offset_[0];
     resume_tick_ = next_tick_;
     for (std::size_t c = 0; c < count_; ++c)
