@@ -15,7 +15,7 @@ constexpr double kFarTicks = 1.0;     // off the line: jitter is less, and a bur
 constexpr double kCatchingUp = 0.45;  // of a period: at twice the rate, still followed, it is 0.5
 constexpr double kSmallStep = 1.0 / 8.0;  // of a wrap: within a burst a loss, no other counter
 
-// A frame this little after the one before is of the same instant, in ticks.
+// A reading without a counter that comes this little after the last repeats it, in ticks.
 constexpr double kRepeatedTicks = 0.25;
 // A pause this long is a gap; nobody catches up with it.
 constexpr std::int64_t kPauseTicks = 16;
