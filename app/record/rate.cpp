@@ -13,6 +13,9 @@ namespace dampline::app {
 
 namespace {
 
+/// So many times the declared one is no sensor's rate.
+constexpr double kNoRate = 10.0;
+
 Estimate scaled(const Estimate& estimate, double factor) {
   return {estimate.value * factor, estimate.std * factor};
 }
@@ -37,6 +40,11 @@ RateCorrection make_correction(const MeasuredRate& measured, double nominal_hz,
                                const std::string& source) {
   if (!(measured.rate_hz > 0.0)) return {};
   const RateCorrection correction{measured.rate_hz / nominal_hz};
+  if (!(correction.ratio < kNoRate))
+    throw RunError{fmt::format(
+        "{}: its times tell no sample rate near {:.3f} Hz: frames come in bursts of more than {:g} "
+        "instants, or [input] sample_rate_hz is wrong",
+        source, nominal_hz, CounterSequence::kBurstTicks)};
   if (!(std::fabs(correction.ratio - 1.0) <= RateCorrection::kMost))
     throw RunError{
         fmt::format("{}: sampled at {:.3f} Hz by its own time, but [input] sample_rate_hz is "
