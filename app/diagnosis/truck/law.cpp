@@ -69,10 +69,10 @@ effect::ModelFit::Vector parts_of(const effect::Model& model, const effect::Mode
     one.theta = effect::ModelFit::Vector::Unit(term);
     out[term] = effect::ModelFitter::force(model, one, row);
   }
-  int term = effect::ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i)
-    for (std::size_t r = 0; r < model.effect[i].count; ++r, ++term)
-      if (!is_damping(model.effect[i])) out[term] = 0.0;
+    if (!is_damping(model.effect[i]))
+      out.segment(effect::ModelFit::first_of(model, i), static_cast<int>(model.effect[i].count))
+          .setZero();
   return out;
 }
 
@@ -165,14 +165,13 @@ std::vector<Settling> settling_of(const effect::Explanation& e) {
       {{"coulomb", e.final_coulomb_n.value, e.final_coulomb_n.std, "N"}, level_parts(e)},
       {{"stiffness", e.final_stiffness_npm.value, e.final_stiffness_npm.std, "N/m"},
        Vector::Unit(effect::ModelFit::kStiffness)}};
-  int term = effect::ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < e.model.count; ++i) {
     const effect::Candidate& c = e.model.effect[i];
     if (i >= e.base_count && c.count > 0 && is_coefficient(c.effect)) {
       const effect::EffectParameter& p = e.step[i - e.base_count].parameter[0];
-      out.push_back({{p.name, p.estimate.value, p.estimate.std, p.unit}, Vector::Unit(term)});
+      out.push_back({{p.name, p.estimate.value, p.estimate.std, p.unit},
+                     Vector::Unit(effect::ModelFit::first_of(e.model, i))});
     }
-    term += static_cast<int>(c.count);
   }
   return out;
 }

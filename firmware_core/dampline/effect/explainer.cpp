@@ -21,13 +21,6 @@ constexpr double kImpulseShare = 0.08;  // of the residual's energy in large val
 constexpr std::uint64_t kFewestImpulses = 6;
 constexpr int kWeightIterations = 3;
 
-/// Where the coefficients of a model's i-th effect begin.
-int first_term(const Model& model, std::size_t i) noexcept {
-  int term = ModelFit::kFirstEffect;
-  for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
-  return term;
-}
-
 /// Impacts that no sensor measured are no column: the rows that they reach are known by their size.
 void add_impulses(const ImpulseMeter& meter, const ModelFit& now, Explanation& out) noexcept {
   if (meter.share() < kImpulseShare || meter.events() < kFewestImpulses) return;
@@ -171,7 +164,7 @@ bool Explainer::readjust(Explanation& out, ModelFit& now) noexcept {
     const Candidate before = place;
     Best best{true, before, now.held_out_nmse, handicap(before) * now.held_out_nmse};
     list_candidates(base_of(now), grids_, candidates_);
-    const int term = first_term(out.model, out.base_count + i);
+    const int term = ModelFit::first_of(out.model, out.base_count + i);
     for (std::size_t c = 0; c < candidates_.count; ++c) {
       if (!is_of_grid(candidates_.item[c], before)) continue;
       if (is_kink_of_spring(out.model, candidates_.item[c], grids_)) continue;
@@ -307,7 +300,7 @@ void Explainer::refine(const Model& model, std::size_t i, const ModelFit& final,
   if (grids_.is_fine(chosen.effect)) return;
   step.place = chosen.variant;
   if (is_pair(chosen)) {
-    const int term = first_term(model, i);
+    const int term = ModelFit::first_of(model, i);
     const double low = std::abs(final.theta[term]);
     const double high = std::abs(final.theta[term + 1]);
     step.place += high / (low + high);
@@ -469,7 +462,7 @@ std::array<Estimate, kChannels> Explainer::lateness(const Diagnosis& diagnosis, 
   const ModelFit fit = settle(diagnosis.store(), with);
   if (!fit.ok) return out;
   for (std::size_t i = others; i < with.count; ++i) {
-    const int term = first_term(with, i);
+    const int term = ModelFit::first_of(with, i);
     out[with.effect[i].form] = {fit.theta[term],
                                 std::sqrt(std::max(fit.covariance(term, term), 0.0))};
   }

@@ -67,6 +67,13 @@ struct ModelFit {
   using Vector = Eigen::Matrix<double, kMostTerms, 1>;
   using Square = Eigen::Matrix<double, kMostTerms, kMostTerms>;
 
+  /// Where the unknowns of a model's i-th effect begin.
+  [[nodiscard]] static int first_of(const Model& model, std::size_t i) noexcept {
+    int term = kFirstEffect;
+    for (std::size_t e = 0; e < i; ++e) term += static_cast<int>(model.effect[e].count);
+    return term;
+  }
+
   bool ok{false};
   int terms{0};
   std::size_t width_index{0};

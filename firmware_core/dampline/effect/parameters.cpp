@@ -104,16 +104,15 @@ HeldErrors held_errors(const Detail& d, double friction, double stiffness) noexc
   if (!(y_m > 0.0 && friction > 0.0 && stiffness > 0.0)) return {};
   const double lost = kHeldShare * friction / (stiffness * y_m);
   HeldErrors out;
-  int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < d.model.count; ++i) {
     const Candidate& c = d.model.effect[i];
+    const int term = ModelFit::first_of(d.model, i);
     if (c.effect == Effect::kProgressiveFriction && c.form == kAbsoluteForm) {
       out.coulomb = lost * y_m * d.fit.theta[term] / friction;
       out.stiffness = -kOfSpring * lost;
     }
     if (c.effect == Effect::kCubicStiffness)
       out.stiffness = 3.0 * lost * y_m * y_m * d.fit.theta[term] / stiffness;
-    term += static_cast<int>(c.count);
   }
   out.coulomb = std::clamp(out.coulomb, -kMostHeld, kMostHeld);
   out.stiffness = std::clamp(out.stiffness, -kMostHeld, kMostHeld);
@@ -175,16 +174,15 @@ Uncertain on_grid(const std::array<double, N>& grid, std::size_t i, const Uncert
 Uncertain own_share(const Model& model, const ModelFit& fit) noexcept {
   Uncertain left{1.0};
   Uncertain stretch{1.0};
-  int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i) {
     const Candidate& c = model.effect[i];
+    const int term = ModelFit::first_of(model, i);
     if (c.effect == Effect::kUnmodelledMode && c.form == kFlexibleForm) {
       for (int r = 0; r < static_cast<int>(c.count - c.slopes); ++r)
         left = left - Uncertain::of(fit, term + r);
     }
     if (c.effect == Effect::kGainError && c.form == kFrameForm)
       stretch = stretch - Uncertain::of(fit, term);
-    term += static_cast<int>(c.count);
   }
   return stretch / left;
 }
@@ -193,14 +191,13 @@ Uncertain own_share(const Model& model, const ModelFit& fit) noexcept {
 /// sliding.
 Uncertain level(const Model& model, const ModelFit& fit) noexcept {
   Uncertain out = Uncertain::of(fit, ModelFit::kCoulomb);
-  int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i) {
     const Candidate& c = model.effect[i];
+    const int term = ModelFit::first_of(model, i);
     const bool sliding =
         has_memory(c.effect) || (c.effect == Effect::kUnmodelledMode && c.form == kPitchForm);
     for (int r = 0; sliding && r < static_cast<int>(c.count - c.slopes); ++r)
       out = out + Uncertain::of(fit, term + r);
-    term += static_cast<int>(c.count);
   }
   return own_share(model, fit) * out;
 }
@@ -421,10 +418,8 @@ void describe(const Detail& d, Explanation& out) noexcept {
   out.final_coulomb_n = base.coulomb_n;
   out.final_stiffness_npm = base.stiffness_npm;
   const Uncertain own = own_share(d.model, d.fit);
-  int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < d.model.count; ++i) {
-    const Part part{d.fit, d.model.effect[i], out.grids, term, own};
-    term += static_cast<int>(part.candidate.count);
+    const Part part{d.fit, d.model.effect[i], out.grids, ModelFit::first_of(d.model, i), own};
     if (i < out.base_count || part.candidate.count == 0) continue;
     Step& step = out.step[i - out.base_count];
     step.parameter_count = 0;

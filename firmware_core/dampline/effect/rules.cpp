@@ -193,16 +193,15 @@ bool is_plausible(const Candidate& candidate, const ModelFit& fit, int term) noe
 }
 
 bool is_plausible(const Model& model, const ModelFit& fit) noexcept {
-  int term = ModelFit::kFirstEffect;
   for (std::size_t i = 0; i < model.count; ++i) {
     const Candidate& known = model.effect[i];
     if (known.count == 0) continue;
+    const int term = ModelFit::first_of(model, i);
     const bool both = known.effect == Effect::kAsymmetricViscous;
     const int at = both ? term + 1 : term;
     const double against =
         both ? std::abs(fit.theta[term]) - fit.theta[at] : -known.sign * fit.theta[at];
     if (against > kSignZ * std::sqrt(std::max(fit.covariance(at, at), 0.0))) return false;
-    term += static_cast<int>(known.count);
   }
   return true;
 }
