@@ -179,14 +179,14 @@ void MqttPublisher::tell(const AlarmChange& change, double time_s) {
 }
 
 void MqttPublisher::end(const std::string& live_json) {
-  constexpr std::chrono::seconds kPatience{5};
+  constexpr std::chrono::seconds kLongest{5};
   std::unique_lock lock{mutex_};
   live_ = live_json;
   status_ = "ended";
   if (!connected_) return;
   send(base_ + "/live", live_);
   send(base_ + "/status", status_, &last_);  // what was sent before is there by then
-  confirmed_.wait_for(lock, kPatience,
+  confirmed_.wait_for(lock, kLongest,
                       [&] { return (last_ == 0 && alarms_.empty()) || !connected_; });
 }
 

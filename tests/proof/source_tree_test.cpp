@@ -37,5 +37,11 @@ TEST(Core, SizesEveryMatrixAtCompileTime) {
   }
 }
 
+// C's library for a Cortex-M7 has none of them in standard C++.
+TEST(Core, TakesNoConstantsFromMacrosOfPosix) {
+  for (const SourceFile& file : read_sources({"firmware_core"}))
+    EXPECT_EQ(file.text.find("M_PI"), std::string::npos) << file.path;
+}
+
 }  // namespace
 }  // namespace dampline::proof

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "dampline/numeric/cholesky.hpp"
 #include "dampline/numeric/wide.hpp"
@@ -43,7 +44,7 @@ double value_of(const Sample& sample, std::size_t lane) noexcept {
 HoleBridge::HoleBridge() noexcept {
   for (std::size_t i = 0; i < taper_.size(); ++i) {
     const double turn = (static_cast<double>(i) + 0.5) / static_cast<double>(kPast);
-    taper_[i] = 0.5 - 0.5 * std::cos(2.0 * M_PI * turn);
+    taper_[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
   }
 }
 
