@@ -62,7 +62,7 @@ PARTS = {
     "oscillators": "Oscillators from two accelerometers",
     "wavelet": "Wavelet-Galerkin rows",
 }
-# The aims are held against these, as far as they are of one commit and machine.
+# The aims are held against these once all are of one commit and machine; until then their section stays.
 AIMED_AT = ("instructions", "update", "least_squares", "signals", "replay", "scale", "latency")
 
 
@@ -96,6 +96,10 @@ class Results:
         """Commit and machine of a part, as bench/run noted them when it ran it."""
         path = self.folder / f"{name}.origin"
         return path.read_text().strip() if path.exists() else ""
+
+    def is_of_now(self, name):
+        """Measured at this commit, on this machine."""
+        return self.origin(name).rsplit(";", 1)[0] == origin().rsplit(";", 1)[0]
 
 
 def time_text(value, unit):
@@ -271,15 +275,12 @@ def own_text(text):
 
 
 def figures_of(results, tables):
-    """Fills `tables` and returns what the aims need; of parts of this commit and machine only."""
+    """Fills `tables` and returns what the aims need."""
     def table(part):
         return tables.setdefault(part, Table())
 
-    def is_of_now(part):
-        return results.origin(part).rsplit(";", 1)[0] == origin().rsplit(";", 1)[0]
-
     def of_now(part, figure):
-        return figure if is_of_now(part) else type(figure)()
+        return figure if results.is_of_now(part) else type(figure)()
 
     ns = {part: benchmarks(table(part), results.json(part).get("benchmarks", []))
           for part in ("update", "block_end", "decode", "blackbox", "wavelet")}
@@ -295,11 +296,8 @@ def figures_of(results, tables):
     limits(table("scale"), measured.get("limit"), of_now("instructions", mean),
            of_now("update", ns["update"]))
     other_processors(table("other_processors"), results.log("other_processors"))
-    return {"mean": of_now("instructions", mean), "worst": of_now("instructions", worst),
-            "ns": of_now("update", ns["update"]), "rls": of_now("least_squares", rls),
-            "apart": apart if is_of_now("least_squares") else None,
-            "streaming": of_now("signals", streaming), "replay": of_now("replay", speeds),
-            "trucks": of_now("scale", trucks), "latency": of_now("latency", latency)}
+    return {"mean": mean, "worst": worst, "ns": ns["update"], "rls": rls, "apart": apart,
+            "streaming": streaming, "replay": speeds, "trucks": trucks, "latency": latency}
 
 
 def sections_of(text):
@@ -325,7 +323,7 @@ def main():
     tables = {}
     figures = figures_of(results, tables)
     parts = sys.argv[2:]
-    if any(part in AIMED_AT for part in parts):
+    if any(part in AIMED_AT for part in parts) and all(map(results.is_of_now, AIMED_AT)):
         tables["aims"] = Table()
         aims(tables["aims"], figures)
         parts.append("aims")
