@@ -296,7 +296,8 @@ def figures_of(results, tables):
     limits(table("scale"), measured.get("limit"), of_now("instructions", mean),
            of_now("update", ns["update"]))
     other_processors(table("other_processors"), results.log("other_processors"))
-    return {"mean": mean, "worst": worst, "ns": ns["update"], "rls": rls, "apart": apart,
+    return {"mean": mean, "worst": worst, "ns": ns["update"], "rls": rls,
+            "apart": apart if results.is_of_now("least_squares") else None,
             "streaming": streaming, "replay": speeds, "trucks": trucks, "latency": latency}
 
 

@@ -46,6 +46,7 @@ struct AntiAliasInput {
 };
 
 struct InputConfig {
+  static constexpr double kHighestRateHz = 1e5;
   double sample_rate_hz{300.0};    ///< nominal; the records' own time decides
   bool sample_rate_is_set{false};  ///< by the configuration; a CSV file has its own otherwise
   AntiAliasInput anti_alias;

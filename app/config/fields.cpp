@@ -114,7 +114,7 @@ void add_csv(InputConfig& input, Fields& out) {
 void add_input(InputConfig& input, Fields& out) {
   out.push_back({"input", "sample_rate_hz",
                  "nominal; the records' own time decides, and a CSV file's where this is absent",
-                 NumberField{&input.sample_rate_hz, {1.0, 1e5}}});
+                 NumberField{&input.sample_rate_hz, {1.0, InputConfig::kHighestRateHz}}});
   out.push_back({"input", "speed_mps", "of the car, if constant and known; absent: unknown",
                  OptionalNumberField{&input.speed_mps, {0.1, 150.0}, ""}});
   out.push_back({"input", "leading", "which wheelset meets the track first",

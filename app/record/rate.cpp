@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/config/config.hpp"
 #include "app/error.hpp"
 #include "app/record/rows.hpp"
 #include "dampline/motion/decimator.hpp"
@@ -12,8 +13,6 @@
 namespace dampline::app {
 
 namespace {
-
-constexpr double kHighestRateHz = 1e5;  // that [input] sample_rate_hz may have
 
 Estimate scaled(const Estimate& estimate, double factor) {
   return {estimate.value * factor, estimate.std * factor};
@@ -39,7 +38,7 @@ RateCorrection make_correction(const MeasuredRate& measured, double nominal_hz,
                                const std::string& source) {
   if (!(measured.rate_hz > 0.0)) return {};
   const RateCorrection correction{measured.rate_hz / nominal_hz};
-  if (measured.rate_hz > kHighestRateHz)
+  if (measured.rate_hz > InputConfig::kHighestRateHz)
     throw RunError{fmt::format(
         "{}: sampled at {:.3g} Hz by its own time, which no sensor is ([input] sample_rate_hz is "
         "{:.3f}): frames come in bursts of more than {:g} instants, or times are not in s",
