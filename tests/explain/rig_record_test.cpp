@@ -186,6 +186,18 @@ TEST(AFrictionAndADamper, AreBothTheBaseWhereNobodyDeclaresOne) {
   EXPECT_NEAR(value_of(found, "coulomb"), 120.0, 3.0);
 }
 
+TEST(AFrictionAndADamper, AreBothTheBaseWhereTheDamperTakesATenthOfTheError) {
+  // 660 N s/m take a tenth of what friction alone leaves of this motion and noise.
+  const auto base_is_both = [](double viscous_nspm) {
+    const Explanation found = told(simulated(
+        [=](double, double, double v) { return (v < 0.0 ? -300.0 : 300.0) + viscous_nspm * v; },
+        30.0));
+    return !found.notes.empty() && found.notes[0].starts_with("Nobody declared a base");
+  };
+  EXPECT_FALSE(base_is_both(540.0));
+  EXPECT_TRUE(base_is_both(800.0));
+}
+
 TEST(ASpring, ThatIsSaidNotToBeThereIsNotAdded) {
   app::Config config;
   config.model.base = {"coulomb"};

@@ -67,6 +67,17 @@ TEST(Scaling, RefusesWhatCannotBeCompared) {
   EXPECT_EQ(judge_scaling(one, shifted).state, ScalingState::kOtherShape);
 }
 
+TEST(Scaling, TakesInputsOfOneShapeWithinFivePercent) {
+  // The larger input: twice the smaller, and a share of another shape.
+  const auto judged = [](double share) {
+    const double other2 = 4.0 * share * share / (1.0 - share * share);
+    return judge_input({.small2 = 1.0, .large2 = 4.0 + other2, .both = 2.0});
+  };
+  EXPECT_EQ(judged(0.049).state, ScalingState::kProportional);
+  EXPECT_DOUBLE_EQ(judged(0.049).input_ratio, 2.0);
+  EXPECT_EQ(judged(0.051).state, ScalingState::kOtherShape);
+}
+
 TEST(Scaling, SaysThatNeitherRunMoves) {
   const OscillatorLaw stuck{.friction_mps2 = 5.0};
   EXPECT_EQ(judge_scaling(steady(stuck, 1.5, 0.0, 1), steady(stuck, 3.0, 0.0, 1)).state,
