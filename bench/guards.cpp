@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/guard_cases.hpp"
-#include "dampline/sample/sample_placer.hpp"
+#include "dampline/sample/placer.hpp"
 
 namespace {
 

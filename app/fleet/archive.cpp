@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/record/columns.hpp"
 #include "app/record/rate.hpp"
 #include "app/run/directory.hpp"

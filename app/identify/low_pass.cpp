@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/identify/truck_result.hpp"
 #include "app/record/source_kind.hpp"
 #include "app/run/trust.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/identify/truck_run.hpp"
 #include "app/record/rate.hpp"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/identify/truck_run.hpp"
 #include "app/inspect/parts.hpp"
 #include "app/inspect/values.hpp"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/inspect/parts.hpp"
 #include "app/live/process.hpp"
 #include "dampline/sample/signal.hpp"

@@ -11,7 +11,7 @@
 
 #include "app/error.hpp"
 #include "app/fleet/spool.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/live/digital_lines.hpp"
 #include "app/live/process.hpp"
 #include "app/live/recorder.hpp"

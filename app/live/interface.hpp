@@ -4,8 +4,8 @@
 #include <string>
 
 #include "app/config/config.hpp"
-#include "app/identify/identify_source.hpp"
-#include "app/live/live_run.hpp"
+#include "app/identify/source.hpp"
+#include "app/live/run.hpp"
 
 namespace dampline::app {
 

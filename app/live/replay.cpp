@@ -11,8 +11,8 @@
 
 #include "app/alarm/alarms.hpp"
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
-#include "app/live/live_explainer.hpp"
+#include "app/identify/source.hpp"
+#include "app/live/explainer.hpp"
 #include "app/live/process.hpp"
 #include "app/live/status.hpp"
 #include "app/record/rate.hpp"

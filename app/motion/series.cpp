@@ -11,7 +11,7 @@
 #include <memory>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/identify/truck_run.hpp"
 #include "app/record/rate.hpp"
 #include "dampline/estimate/statistics.hpp"

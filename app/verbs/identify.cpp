@@ -23,7 +23,7 @@
 #include "app/diagnosis/truck/document.hpp"
 #include "app/diagnosis/truck/explanation.hpp"
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/live/interface.hpp"
 #include "app/record/columns.hpp"
 #include "app/record/rate.hpp"

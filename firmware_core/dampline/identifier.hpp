@@ -29,7 +29,7 @@
 #include "dampline/sample.hpp"
 #include "dampline/sample/assembler.hpp"
 #include "dampline/sample/hole_bridge.hpp"
-#include "dampline/sample/sample_placer.hpp"
+#include "dampline/sample/placer.hpp"
 #include "dampline/snapshot.hpp"
 
 namespace dampline {

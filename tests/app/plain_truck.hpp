@@ -14,7 +14,7 @@
 
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/diagnosis/truck/explanation.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "tests/drivers/temporary_file.hpp"
 
 /// A truck on rough track and what sensors of any kind make of it, by a simulation of its own:

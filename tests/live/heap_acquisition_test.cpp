@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/live/acquisition.hpp"
-#include "app/live/live_explainer.hpp"
+#include "app/live/explainer.hpp"
 #include "app/record/frames.hpp"
 #include "app/serve/tap.hpp"
 #include "drivers/os/system_clock.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/live_run.hpp"
+#include "app/live/run.hpp"
 #include "app/record/frames.hpp"
 #include "app/run/directory.hpp"
 #include "app/run/json.hpp"

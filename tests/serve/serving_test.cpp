@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "app/error.hpp"
-#include "app/live/live_run.hpp"
+#include "app/live/run.hpp"
 #include "app/record/frames.hpp"
 #include "app/run/json.hpp"
 #include "app/run/state.hpp"

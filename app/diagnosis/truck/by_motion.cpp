@@ -17,7 +17,7 @@
 #include "app/diagnosis/truck/document.hpp"
 #include "app/diagnosis/truck/explanation.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/identify/truck_samples.hpp"
 #include "app/law/block_fit.hpp"
 #include "dampline/motion/drift_free_integral.hpp"

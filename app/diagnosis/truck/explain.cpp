@@ -17,7 +17,7 @@
 #include "app/diagnosis/truck/points.hpp"
 #include "app/diagnosis/truck/verdict.hpp"
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "dampline/effect/explainer.hpp"
 #include "dampline/numeric/mean_t.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/error.hpp"
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 #include "app/record/source_kind.hpp"
 
 namespace dampline::app {

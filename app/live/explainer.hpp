@@ -10,8 +10,8 @@
 #include "app/config/config.hpp"
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/identify/truck_run.hpp"
-#include "app/live/live_floor.hpp"
-#include "app/live/live_other.hpp"
+#include "app/live/floor.hpp"
+#include "app/live/other_truck.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/effect/judgement.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/live_run.hpp"
+#include "app/live/run.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/live_floor.hpp"
+#include "app/live/floor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/identify/identify_source.hpp"
+#include "app/identify/source.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/live_other.hpp"
+#include "app/live/other_truck.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dampline/sample/sample_placer.hpp"
+#include "dampline/sample/placer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The live run over interfaces: no bus, a simulated source, a sink in memory.
-#include "app/live/live_run.hpp"
+#include "app/live/run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/live/live_explainer.hpp"
+#include "app/live/explainer.hpp"
 
 #include <sys/resource.h>
 

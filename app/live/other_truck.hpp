@@ -6,7 +6,7 @@
 #include "app/config/config.hpp"
 #include "app/diagnosis/truck/explain.hpp"
 #include "app/diagnosis/truck/surrogates.hpp"
-#include "app/live/live_floor.hpp"
+#include "app/live/floor.hpp"
 #include "dampline/effect/gram_store.hpp"
 #include "dampline/identifier.hpp"
 
