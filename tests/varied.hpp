@@ -67,7 +67,6 @@ auto each(F f, A a, const Number<B>& b) noexcept {
   return each(f, Number<A>{a, a, a, b.use}, b);
 }
 
-// NOLINTBEGIN(bugprone-macro-parentheses): an operator
 #define VARIED_OPERATOR(op, Result)                                                        \
   template <class A, class B>                                                              \
   requires(Plain<B> || requires(B b) { b.use; }) Result operator op(const Number<A>& a,    \
@@ -89,7 +88,6 @@ VARIED_OPERATOR(>=, bool)
 VARIED_OPERATOR(==, bool)
 VARIED_OPERATOR(!=, bool)
 #undef VARIED_OPERATOR
-// NOLINTEND(bugprone-macro-parentheses)
 
 /// The constant: as `VARIED` has it, or as it is.
 template <class T>
