@@ -50,13 +50,13 @@ struct Number {
 template <class T>
 concept Plain = std::is_arithmetic_v<T>;
 
+/// An operation on all three values of its operands.
 template <class F, class A, class B>
 auto each(F f, const Number<A>& a, const Number<B>& b) noexcept {
-  if (a.use == b.use)
-    return Number<decltype(f(a.value, b.value))>{f(a.value, b.value), f(a.low, b.low),
-                                                 f(a.high, b.high), a.use};
+  using Out = Number<decltype(f(a.value, b.value))>;
+  if (a.use == b.use) return Out{f(a.value, b.value), f(a.low, b.low), f(a.high, b.high), a.use};
   const auto value = f(A{a}, B{b});  // of two constants: neither is followed further
-  return Number<decltype(f(a.value, b.value))>{value, value, value, a.use};
+  return Out{value, value, value, a.use};
 }
 template <class F, class A, Plain B>
 auto each(F f, const Number<A>& a, B b) noexcept {

@@ -20,7 +20,7 @@ Explanation leaves(double nmse, double floor_nmse, double noise_share) {
   return out;
 }
 
-/// The same well above its floor of motion, free run over ten segments.
+/// A law at its floor, that of the motion, which moved freely over ten segments.
 Explanation moves(double nmse_of_equations, double nmse_of_motion) {
   Explanation out = leaves(0.01, 0.01, 0.0);
   out.final.free_run = {

@@ -78,6 +78,14 @@ TEST(Scaling, TakesInputsOfOneShapeWithinFivePercent) {
   EXPECT_EQ(judged(0.051).state, ScalingState::kOtherShape);
 }
 
+TEST(Scaling, ComparesInputsThatATenthTellsApart) {
+  const auto judged = [](double ratio) {
+    return judge_input({.small2 = 1.0, .large2 = ratio * ratio, .both = ratio}).state;
+  };
+  EXPECT_EQ(judged(1.09), ScalingState::kSameInput);
+  EXPECT_EQ(judged(1.11), ScalingState::kProportional);
+}
+
 TEST(Scaling, SaysThatNeitherRunMoves) {
   const OscillatorLaw stuck{.friction_mps2 = 5.0};
   EXPECT_EQ(judge_scaling(steady(stuck, 1.5, 0.0, 1), steady(stuck, 3.0, 0.0, 1)).state,
